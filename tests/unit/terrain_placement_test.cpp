@@ -1,5 +1,6 @@
 // Elevation files that are placed by other means than a transform and a coordinate system of the Earth.
 #include <cmath>
+#include <fstream>
 
 #include <ogr_spatialref.h>
 
@@ -153,6 +154,31 @@ TEST_F(ElevationFile, ImpossibleHeightsAreHolesAtAnyResolution) {
     const ElevationRaster reduced = read(folder_.write(file, height), 100);
     EXPECT_NEAR(reduced.min_m, 1000.0F, 0.1F) << value;
     EXPECT_NEAR(reduced.max_m, 1000.0F, 0.1F) << value;
+  }
+}
+
+// Samples are searched for undeclared holes in blocks. A row of this file is longer than a block.
+TEST_F(ElevationFile, HolesAreFoundInLongRows) {
+  TestFile file;
+  file.width = 1500000;
+  file.height = 3;
+  file.transform = {500000.0, 0.01, 0.0, 5000000.0, 0.0, -100.0};
+  file.type = GDT_Int16;
+  const auto height = [](int x, int) { return x >= 1420000 && x < 1450000 ? -9999.0 : 1000.0; };
+  const ElevationRaster reduced = read(folder_.write(file, height), 100);
+  EXPECT_NEAR(reduced.min_m, 1000.0F, 0.1F);
+  EXPECT_NEAR(reduced.max_m, 1000.0F, 0.1F);
+  EXPECT_TRUE(noted(reduced, "90000 samples of -9999 are far from all others and treated as holes"));
+}
+
+// A small file can declare more samples than could be read in a day.
+TEST_F(ElevationFile, FilesWithTooManySamplesAreRefused) {
+  for (const char* const size :
+       {"rasterXSize=\"2000000000\" rasterYSize=\"2000000000\"", "rasterXSize=\"100001\" rasterYSize=\"100000\""}) {
+    const std::filesystem::path path = folder_.path("huge.vrt");
+    std::ofstream(path) << "<VRTDataset " << size << "><SRS>EPSG:32632</SRS><GeoTransform>500000,0.01,0,5000000,0,-0.01"
+                        << "</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\"/></VRTDataset>";
+    EXPECT_NE(error(path).find("samples; expected at most 10000 million"), std::string::npos);
   }
 }
 

@@ -388,27 +388,22 @@ Result<ElevationRaster> read_elevation_here(const std::string& source_name, cons
   Result<Dataset> opened = open_elevation(source_name, messages);
   if (!opened.ok()) return std::move(opened).error();
   GDALDataset* file = opened.value().get();
-  if (file->GetRasterXSize() < 2 || file->GetRasterYSize() < 2)
-    return elevation_error(source_name, "has " + std::to_string(file->GetRasterXSize()) + " x " +
-                                            std::to_string(file->GetRasterYSize()) +
-                                            " samples, at least 2 x 2 are needed");
-  if (GDALDataTypeIsComplex(file->GetRasterBand(1)->GetRasterDataType()) != 0)
-    return elevation_error(source_name, "contains complex numbers; expected real elevations");
+  if (Result<void> readable = check_samples(source_name, *file); !readable.ok()) return std::move(readable).error();
 
   std::vector<std::string> notes;
   Result<Dataset> decoded = decode_colours(source_name, *file, notes);
   if (!decoded.ok()) return std::move(decoded).error();
   if (decoded.value()) file = decoded.value().get();
-  const Dataset declared = declare_no_data(*file, notes);
-  if (declared) file = declared.get();
   if (file->GetRasterCount() > 1)
     notes.push_back("has " + std::to_string(file->GetRasterCount()) + " bands; the first is used as elevation");
   Result<Georeference> placed = georeference(source_name, *opened.value(), request.units, notes);
   if (!placed.ok()) return std::move(placed).error();
   Georeference geo = std::move(placed).value();
-  geo.height_unit_m = height_unit_m(*opened.value(), *file, notes);
   Result<void> somewhere = check_extent(source_name, geo, file->GetRasterXSize(), file->GetRasterYSize());
   if (!somewhere.ok()) return std::move(somewhere).error();
+  const Dataset declared = declare_no_data(*file, notes);
+  if (declared) file = declared.get();
+  geo.height_unit_m = height_unit_m(*opened.value(), *file, notes);
   int width = 0;
   int height = 0;
   Result<std::vector<float>> samples =

@@ -75,6 +75,9 @@ void register_drivers();
 // network file system such as /vsicurl/; virtual rasters (VRT) that refer to one are refused. Requires a NetworkGuard.
 [[nodiscard]] Result<Dataset> open_elevation(const std::string& source, const Messages& messages);
 
+// Returns an error for files with too few or too many samples, and for samples that are complex numbers.
+[[nodiscard]] Result<void> check_samples(const std::string& source, GDALDataset& file);
+
 // Decodes tiles with heights in the colours of an 8-bit image (Terrarium or Terrain-RGB) to one band in metres, and
 // adds a note with the encoding. Returns null for files that are not colour images, and an error for pictures without
 // heights.

@@ -148,6 +148,20 @@ Result<Dataset> open_elevation(const std::string& source, const Messages& messag
   return file;
 }
 
+Result<void> check_samples(const std::string& source, GDALDataset& file) {
+  // A minute of reading. A virtual raster of a few hundred bytes can declare 4e18 samples.
+  constexpr double kMaxSamples = 1.0e10;
+  const int width = file.GetRasterXSize();
+  const int height = file.GetRasterYSize();
+  const std::string size = "has " + std::to_string(width) + " x " + std::to_string(height) + " samples";
+  if (width < 2 || height < 2) return elevation_error(source, size + ", at least 2 x 2 are needed");
+  if (static_cast<double>(width) * height > kMaxSamples)
+    return elevation_error(source, size + "; expected at most 10000 million: crop or reduce it with gdal_translate");
+  if (GDALDataTypeIsComplex(file.GetRasterBand(1)->GetRasterDataType()) != 0)
+    return elevation_error(source, "contains complex numbers; expected real elevations");
+  return {};
+}
+
 bool elevation_files_supported() { return true; }
 
 std::vector<std::string> elevation_file_list_here(const std::string& source) {
