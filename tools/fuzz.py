@@ -69,7 +69,8 @@ def run(build, corpus, name, seconds, state):
         finally:
             text = log.read_text(errors="replace")
             found = sorted(set(findings.glob(f"{name}-*")) - before)
-            busy = [path for path in found if f"{name}-timeout-" in path.name and not hangs(program, path, environment)]
+            slow = (f"{name}-timeout-", f"{name}-slow-unit-")
+            busy = [path for path in found if path.name.startswith(slow) and not hangs(program, path, environment)]
             for path in busy:
                 path.unlink()
             found = [path for path in found if path not in busy]

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 
+#include "../sanitizers.hpp"
 #include "small_effect.hpp"
 #include "tyndall/sky_probe.hpp"
 
@@ -15,12 +16,7 @@ std::atomic<long> locks = 0;
 }  // namespace
 
 // Counts the locks of the whole program. The thread sanitizer has a function of its own.
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define TYNDALL_COUNTS_NO_LOCKS
-#endif
-#endif
-#ifndef TYNDALL_COUNTS_NO_LOCKS
+#ifndef TYNDALL_THREAD_SANITIZER
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
   using Function = int (*)(pthread_mutex_t*);
   static const auto lock = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
@@ -125,7 +121,7 @@ TEST(EffectRecording, WhatIsWatchedIsSeen) {
   std::mutex mutex;
   mutex.lock();
   mutex.unlock();
-#ifndef TYNDALL_COUNTS_NO_LOCKS
+#ifndef TYNDALL_THREAD_SANITIZER
   EXPECT_GT(locks, before);
 #else
   EXPECT_EQ(locks, before);

@@ -14,7 +14,7 @@ namespace tyndall::scene {
 namespace {
 
 // A part of a raster that is read at once. Files can declare two thousand million columns.
-struct Block {
+struct SampleBlock {
   int left, top, columns, rows;
   std::size_t samples() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
 };
@@ -29,7 +29,7 @@ bool for_each_block(int width, int height, const Visit& visit) {
     const int block_rows = std::min(rows, height - top);
     for (int left = 0; left < width;) {
       const int block_columns = std::min(columns, width - left);
-      if (!visit(Block{left, top, block_columns, block_rows})) return false;
+      if (!visit(SampleBlock{left, top, block_columns, block_rows})) return false;
       left += block_columns;
     }
     top += block_rows;
@@ -39,7 +39,7 @@ bool for_each_block(int width, int height, const Visit& visit) {
 
 // Reads a block of a band into `out`.
 template <typename T>
-bool read_block(GDALRasterBand& band, const Block& block, GDALDataType type, std::vector<T>& out) {
+bool read_block(GDALRasterBand& band, const SampleBlock& block, GDALDataType type, std::vector<T>& out) {
   out.resize(block.samples());
   return band.RasterIO(GF_Read, block.left, block.top, block.columns, block.rows, out.data(), block.columns, block.rows,
                        type, 0, 0, nullptr) == CE_None;
@@ -78,7 +78,7 @@ constexpr double kLowest_m = -11500.0, kHighest_m = 9500.0;
 
 // Sets `holes` for samples that are transparent, masked or without data in all three bands. Returns whether that
 // worked.
-bool read_holes(GDALDataset& file, const Block& block, std::vector<bool>& holes) {
+bool read_holes(GDALDataset& file, const SampleBlock& block, std::vector<bool>& holes) {
   std::vector<std::uint8_t> mask;
   holes.assign(block.samples(), true);
   for (int b = 1; b <= 3; ++b) {
@@ -116,7 +116,7 @@ Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std
   std::vector<bool> holes;
   bool has_holes = false;
   bool stored = true;
-  const bool read = for_each_block(width, height, [&](const Block& block) {
+  const bool read = for_each_block(width, height, [&](const SampleBlock& block) {
     std::array<int, 3> bands = {1, 2, 3};
     colours.resize(3 * block.samples());
     heights.resize(block.samples());
@@ -228,7 +228,7 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
   const double scale = band.GetScale(), offset = band.GetOffset();
   HoleStatistics found;
   std::vector<float> samples;
-  const bool read = for_each_block(file.GetRasterXSize(), file.GetRasterYSize(), [&](const Block& block) {
+  const bool read = for_each_block(file.GetRasterXSize(), file.GetRasterYSize(), [&](const SampleBlock& block) {
     if (!read_block(band, block, GDT_Float32, samples)) return false;
     if (found.add_ordinary(samples, scale, offset)) return true;
     for (const float sample : samples) found.add(static_cast<double>(sample), scale, offset);
