@@ -1,6 +1,9 @@
 // The groups of rays that form the rows of a report's tables.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "validate/study.hpp"
 
 namespace tyndall::validate {
@@ -32,6 +35,14 @@ constexpr TurbidGroup kTurbidGroups[] = {
     {"0.5 to 10 deg", [](const TestRay& r) { return r.band == SunBand::up; }},
     {"0 to -6 deg", [](const TestRay& r) { return r.band == SunBand::twilight; }},
 };
+
+// A row of the tables of the turbid set: one of its atmospheres, or all of them together.
+struct TurbidRow {
+  std::string optical_depth, ground_albedo;  // numbers or "all"
+  const char* sun;
+  ErrorSummary errors;
+};
+[[nodiscard]] std::vector<TurbidRow> turbid_rows(const Study& study, std::size_t model);
 
 struct SkyBand {
   const char* sun;

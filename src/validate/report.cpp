@@ -92,12 +92,10 @@ std::string turbid_tables(const Study& study) {
               "<th class=\"t\">model</th><th>optical depth</th><th>albedo</th><th class=\"t\">sun</th>",
               kErrorHead});
   for (std::size_t m = 0; m < study.models.size(); ++m) {
-    for (std::size_t a = 0; a < study.turbid.size(); ++a) {
-      for (const TurbidGroup& group : kTurbidGroups) {
-        out += concat({"<tr>", text_cell(study.models[m].name), cell(fixed(kTurbidAirs[a].optical_depth, 2)),
-                       cell(fixed(kTurbidAirs[a].ground_albedo, 1)), text_cell(group.sun),
-                       error_cells(summarise_turbid(study, m, a, group.takes)), "</tr>\n"});
-      }
+    for (const TurbidRow& row : turbid_rows(study, m)) {
+      out += concat({row.optical_depth == "all" ? "<tr class=\"all\">" : "<tr>", text_cell(study.models[m].name),
+                     cell(row.optical_depth), cell(row.ground_albedo), text_cell(row.sun), error_cells(row.errors),
+                     "</tr>\n"});
     }
   }
   return out + "</table>\n";

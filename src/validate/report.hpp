@@ -21,8 +21,9 @@ struct Origin {
 [[nodiscard]] std::string to_markdown(const Study& study, const ColorTest& colors, const Origin& origin);
 // Returns {"command", "version", "device", "rays", "samples", "seed", "orders", "models": [{"name", "orders", "groups":
 // [{"atmosphere", "sun", "region", "rays", "mean", "median", "p95", "worst", "noise", "channels": [{"mean", ...}]}],
-// "turbid": [{"optical_depth", "ground_albedo", "sun", as for groups}], "sky": [...]}], "colors": [{"color", "sun",
-// "view", "rays", "luminance_mean", "luminance_p95", "duv_mean", "duv_p95", "de2000_mean", "de2000_p95", "noise"}]}.
+// "turbid": [{"optical_depth", "ground_albedo", "sun", as for groups}], "turbid_all": [{"sun", as for groups}],
+// "sky": [...]}], "colors": [{"color", "sun", "view", "rays", "luminance_mean", "luminance_p95", "duv_mean", "duv_p95",
+// "de2000_mean", "de2000_p95", "noise"}]}.
 [[nodiscard]] std::string to_json(const Study& study, const ColorTest& colors, const Origin& origin);
 
 }  // namespace tyndall::validate

@@ -34,9 +34,20 @@ std::string json_turbid(const Study& study, std::size_t model) {
   for (std::size_t a = 0; a < study.turbid.size(); ++a) {
     for (const TurbidGroup& group : kTurbidGroups) {
       out += concat({out.empty() ? "\n" : ",\n", "   {\"optical_depth\": ", json_number(kTurbidAirs[a].optical_depth),
-                     ", \"ground_albedo\": ", json_number(kTurbidAirs[a].ground_albedo), ", \"sun\": ",
-                     quoted_text(group.sun), ", ", json_errors(summarise_turbid(study, model, a, group.takes)), "}"});
+                     ", \"ground_albedo\": ", json_number(kTurbidAirs[a].ground_albedo),
+                     ", \"sun\": ", quoted_text(group.sun), ", ",
+                     json_errors(summarise_turbid(study, model, a, 1, group.takes)), "}"});
     }
+  }
+  return out;
+}
+
+// All atmospheres of the turbid set together.
+std::string json_turbid_all(const Study& study, std::size_t model) {
+  std::string out;
+  for (const TurbidGroup& group : kTurbidGroups) {
+    out += concat({out.empty() ? "\n" : ",\n", "   {\"sun\": ", quoted_text(group.sun), ", ",
+                   json_errors(summarise_turbid(study, model, 0, study.turbid.size(), group.takes)), "}"});
   }
   return out;
 }
@@ -51,21 +62,19 @@ std::string markdown_turbid(const Study& study) {
        "|---|--:|--:|---|--:|--:|--:|--:|--:|--:|\n"});
   for (std::size_t m = 0; m < study.models.size(); ++m) {
     if (study.models[m].orders != 0) continue;
-    for (std::size_t a = 0; a < study.turbid.size(); ++a) {
-      for (const TurbidGroup& group : kTurbidGroups) {
-        const ErrorSummary e = summarise_turbid(study, m, a, group.takes);
-        out += concat({"| ",  study.models[m].name,
-                       " | ", fixed(kTurbidAirs[a].optical_depth, 2),
-                       " | ", fixed(kTurbidAirs[a].ground_albedo, 1),
-                       " | ", group.sun,
-                       " | ", std::to_string(e.channels[0].count),
-                       " | ", percent(e.all.mean),
-                       " | ", percent(e.all.median),
-                       " | ", percent(e.all.p95),
-                       " | ", percent(e.all.worst),
-                       " | ", percent(e.noise),
-                       " |\n"});
-      }
+    for (const TurbidRow& row : turbid_rows(study, m)) {
+      const ErrorSummary& e = row.errors;
+      out += concat({"| ",  study.models[m].name,
+                     " | ", row.optical_depth,
+                     " | ", row.ground_albedo,
+                     " | ", row.sun,
+                     " | ", std::to_string(e.channels[0].count),
+                     " | ", percent(e.all.mean),
+                     " | ", percent(e.all.median),
+                     " | ", percent(e.all.p95),
+                     " | ", percent(e.all.worst),
+                     " | ", percent(e.noise),
+                     " |\n"});
     }
   }
   return out;
@@ -91,7 +100,8 @@ std::string to_json(const Study& study, const ColorTest& colors, const Origin& o
         first = false;
       }
     }
-    out += concat({"\n  ], \"turbid\": [", json_turbid(study, m), "\n  ], \"sky\": ["});
+    out += concat({"\n  ], \"turbid\": [", json_turbid(study, m), "\n  ], \"turbid_all\": [", json_turbid_all(study, m),
+                   "\n  ], \"sky\": ["});
     first = true;
     for (const SkyBand& band : kSkyBands) {
       out += concat({first ? "\n" : ",\n", "   {\"sun\": ", quoted_text(band.sun), ", ",

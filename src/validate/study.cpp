@@ -54,13 +54,15 @@ std::vector<RayTest> make_turbid_tests(const Params& params, const Options& opti
 }
 
 // Summarises a model's errors over the rays of a test that a predicate selects.
-ErrorSummary summarise_test(const RayTest& test, std::size_t model, int orders,
-                            const std::function<bool(const TestRay&)>& takes) {
+ErrorSummary summarise_tests(std::span<const RayTest> tests, std::size_t model, int orders,
+                             const std::function<bool(const TestRay&)>& takes) {
   std::vector<Comparison> comparisons;
-  for (std::size_t i = 0; i < test.rays.size(); ++i) {
-    const Truth right = truth(test.answers.reference[i], orders);
-    if (takes(test.rays[i]) && is_comparable(right))
-      comparisons.push_back(compare(test.answers.models[model][i], right));
+  for (const RayTest& test : tests) {
+    for (std::size_t i = 0; i < test.rays.size(); ++i) {
+      const Truth right = truth(test.answers.reference[i], orders);
+      if (takes(test.rays[i]) && is_comparable(right))
+        comparisons.push_back(compare(test.answers.models[model][i], right));
+    }
   }
   return summarise(comparisons);
 }
@@ -220,12 +222,12 @@ std::vector<Evaluation> evaluations(Study& study, const Params& params) {
 
 ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,
                        const std::function<bool(const TestRay&)>& takes) {
-  return summarise_test(study.rays[atmosphere], model, study.models[model].orders, takes);
+  return summarise_tests({&study.rays[atmosphere], 1}, model, study.models[model].orders, takes);
 }
 
-ErrorSummary summarise_turbid(const Study& study, std::size_t model, std::size_t air,
+ErrorSummary summarise_turbid(const Study& study, std::size_t model, std::size_t first, std::size_t count,
                               const std::function<bool(const TestRay&)>& takes) {
-  return summarise_test(study.turbid[air], model, study.models[model].orders, takes);
+  return summarise_tests(std::span(study.turbid).subspan(first, count), model, study.models[model].orders, takes);
 }
 
 std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_t count) {

@@ -127,8 +127,8 @@ struct Evaluation {
 // Summarises a model's errors over the rays of one atmosphere that a predicate selects.
 [[nodiscard]] ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,
                                      const std::function<bool(const TestRay&)>& takes);
-// Summarises a model's errors over the selected rays of one of kTurbidAirs.
-[[nodiscard]] ErrorSummary summarise_turbid(const Study& study, std::size_t model, std::size_t air,
+// Summarises a model's errors over the selected rays of `count` of kTurbidAirs, from the index `first`.
+[[nodiscard]] ErrorSummary summarise_turbid(const Study& study, std::size_t model, std::size_t first, std::size_t count,
                                             const std::function<bool(const TestRay&)>& takes);
 // A ray on which a model has one of its largest errors.
 struct BadRay {

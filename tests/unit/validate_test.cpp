@@ -7,6 +7,7 @@
 
 #include "reference/atmosphere.hpp"
 #include "validate/color.hpp"
+#include "validate/groups.hpp"
 #include "validate/parts.hpp"
 #include "validate/plot.hpp"
 #include "validate/rays.hpp"
@@ -241,6 +242,27 @@ TEST(ValidateStudy, AtmospheresDifferHoweverTheyAreDescribed) {
   }
 }
 
+// Expects two rows for each turbid atmosphere, by day and in twilight, and two for all of them together.
+void expect_totals(const std::vector<TurbidRow>& rows) {
+  ASSERT_EQ(rows.size(), 2 * std::size(kTurbidAirs) + 2);
+  for (const std::size_t sun : {0U, 1U}) {
+    std::size_t rays = 0;
+    double sum = 0.0, worst = 0.0;
+    for (std::size_t i = sun; i < rows.size() - 2; i += 2) {
+      const Summary& errors = rows[i].errors.all;
+      rays += errors.count;
+      sum += static_cast<double>(errors.count) * errors.mean;
+      worst = std::max(worst, errors.worst);
+    }
+    const TurbidRow& all = rows[rows.size() - 2 + sun];
+    EXPECT_EQ(all.optical_depth, "all");
+    EXPECT_STREQ(all.sun, rows[sun].sun);
+    EXPECT_EQ(all.errors.all.count, rays);
+    EXPECT_NEAR(all.errors.all.mean * static_cast<double>(rays), sum, 1e-9);
+    EXPECT_EQ(all.errors.all.worst, worst);
+  }
+}
+
 TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
   Options options;
   options.rays = 72;
@@ -274,9 +296,10 @@ TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
   // The model of order 1 on the turbid set.
   ASSERT_EQ(study.value().turbid.size(), std::size(kTurbidAirs));
   for (std::size_t air = 0; air < std::size(kTurbidAirs); ++air) {
-    const ErrorSummary first = summarise_turbid(study.value(), 0, air, up);
+    const ErrorSummary first = summarise_turbid(study.value(), 0, air, 1, up);
     EXPECT_LT(first.all.mean, 3.0 * first.noise + 1e-6) << air;
   }
+  expect_totals(turbid_rows(study.value(), 0));
   EXPECT_LT(summarise_sky(study.value(), 1, 0.001, 90.0).all.mean, 0.05);
   EXPECT_GT(summarise_sky(study.value(), 2, 0.001, 90.0).all.mean, 0.15);
 
