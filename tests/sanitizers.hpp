@@ -3,6 +3,7 @@
 
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)
+// It has functions of its own where tests replace `operator new` (tests/gpu/CMakeLists.txt) or pthread_mutex_lock().
 #define TYNDALL_THREAD_SANITIZER
 #endif
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
@@ -16,6 +17,11 @@ namespace tyndall {
 constexpr bool kSanitizers = true;
 #else
 constexpr bool kSanitizers = false;
+#endif
+#ifdef TYNDALL_THREAD_SANITIZER
+constexpr bool kThreadSanitizer = true;
+#else
+constexpr bool kThreadSanitizer = false;
 #endif
 
 }  // namespace tyndall

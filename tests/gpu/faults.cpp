@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
-#include <new>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -439,12 +438,3 @@ void forget_commands() {
 }
 
 }  // namespace tyndall::faults
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  const bool fails = tyndall::faults::host_allocation_fails(__builtin_return_address(0));
-  if (void* const made = fails ? nullptr : std::malloc(size > 0 ? size : 1); made != nullptr) return made;
-  throw std::bad_alloc();
-}
-// Only the driver calls this. The version of the address sanitizer returns memory that free() must not receive.
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return std::malloc(size > 0 ? size : 1); }
-[[gnu::noinline]] void operator delete(void* pointer) noexcept { std::free(pointer); }
-[[gnu::noinline]] void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }

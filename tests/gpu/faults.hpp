@@ -1,5 +1,5 @@
 // Fault injection: lets the n-th call fail that creates a Vulkan object or memory, or the n-th call of `operator new`,
-// which faults.cpp replaces in programs that link it. Applies to the thread that arms it.
+// which fault_allocations.cpp replaces in programs that link it. Applies to the thread that arms it.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +21,8 @@ enum class Kind {
 void arm(Kind kind, long n);
 // Returns whether a call has failed since arm().
 bool disarm();
+// Returns whether an allocation on the host must fail, for which the function at this address calls `operator new`.
+bool host_allocation_fails(const void* caller);
 
 // A vkGetInstanceProcAddr() whose functions can fail. For one device at a time.
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name);
