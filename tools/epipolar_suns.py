@@ -27,8 +27,9 @@ SUN_AZIMUTH = 5.4
 VIEW_HEIGHT_DEG = 45.0  # camera.fov_deg
 TOLERANCE = 2           # of 255
 PLACES = {"valley": (-13000.0, 1350.0, 14000.0), "8 km": (0.0, 8000.0, 0.0)}
-# Yaw of the view relative to the azimuth of the sun. `beside` leaves the sun outside the picture, `opposite` behind the camera.
-DIRECTIONS = {"towards": 0.0, "beside": 60.0, "opposite": 180.0}
+# Yaw of the view relative to the azimuth of the sun. `beside` leaves the sun outside the picture, `across` nearly at a right
+# angle to the view, and `opposite` behind the camera.
+DIRECTIONS = {"towards": 0.0, "beside": 60.0, "across": 87.0, "opposite": 180.0}
 VIEWS = [f"{place}, {direction}" for place in PLACES for direction in DIRECTIONS]
 
 

@@ -113,6 +113,41 @@ TEST_F(EpipolarErrors, TwilightSkyIsLikeBruteForce) {
 
 // Between the horizon of sea level and that of lower land, 0.7 degrees below it, the sky of the tables is as smooth as
 // above: from row to row it changes by a few per cent. If rays ended at sea level, there would be a dark line.
+// With the sun at a right angle to the view, the slices are nearly parallel to the upper and the lower border. The last
+// one may cross only a corner of the picture, but all pixels of the border are between it and the next one.
+TEST_F(EpipolarErrors, ThePictureHasNoLineAtItsBorder) {
+  BoxScene scene;
+  scene.name = "the sun beside the view";
+  scene.extent = {240, 136};
+  scene.altitude_m = 8000.0;
+  scene.pitch_deg = 8.0;
+  scene.buildings = false;
+  scene.cascades = 0;
+  const std::uint32_t width = scene.extent.width, height = scene.extent.height;
+  double worst = 0.0;
+  std::string where;
+  for (const double elevation_deg : {-3.0, 2.0, 12.0}) {
+    for (const double azimuth_deg : {87.0, 91.0, 95.0, 97.0}) {
+      scene.sun.elevation_deg = elevation_deg;
+      scene.sun.azimuth_deg = azimuth_deg;
+      show(scene);
+      const Picture reference = draw(by_brute_force(small_params()), "brute force");
+      const Picture picture = draw(small_params(), scene.name);
+      for (const std::uint32_t y : {0U, 1U, height - 2, height - 1}) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+          const std::size_t i = std::size_t{y} * width + x;
+          const double off = largest(glm::abs(picture[i] - reference[i])) / largest(reference[i]);
+          if (off <= worst) continue;
+          worst = off;
+          where = "sun at " + std::to_string(elevation_deg) + " deg, azimuth " + std::to_string(azimuth_deg) +
+                  " deg, pixel " + std::to_string(x) + ", " + std::to_string(y);
+        }
+      }
+    }
+  }
+  EXPECT_LE(worst, 0.03) << where;  // 0.18 without the longer slices
+}
+
 TEST_F(EpipolarErrors, TheSkyHasNoLineAboveLowerLand) {
   for (const double altitude : {2.0, -130.0}) {
     BoxScene scene;

@@ -159,7 +159,7 @@ namespace {
 
 constexpr std::array<double, 6> kUsual = {-9999.0, -32768.0, -32767.0, -999.0, 32767.0, 9999.0};
 
-// What the samples of a band, in units of the file, tell about holes.
+// Statistics of the samples of a band, in units of the file, that decide about holes.
 struct HoleStatistics {
   std::array<std::size_t, kUsual.size()> count = {};
   std::array<double, kUsual.size()> gap;  // to the nearest other sample
