@@ -48,7 +48,7 @@ void main() {
 
   SurfaceLight light = surface_light(position);
   uint cascade;
-  vec3 sum = irradiance(light, position, light.up, light.up, 1.0, cascade);
+  vec3 sum = irradiance(light, position, light.up, light.up, 1.0, false, cascade);
   vec3 albedo = mesh.ground_albedo;
   if (mesh.show_cascades != 0u && cascade < mesh.cascade_count) albedo = 0.75 * albedo + 0.25 * cascade_color(cascade);
   radiance = vec4(albedo * 0.318309886 * sum * mesh.sun_irradiance, 1.0);

@@ -39,7 +39,7 @@ void main() {
   shape = dot(shape, shape) > 0.0 ? normalize(shape) : vec3(0.0, 1.0, 0.0);
   if (dot(shape, to_eye) < 0.0) shape = -shape;
   if (!front && push.double_sided == 0u) discard;
-  if (push.kind == kMask && base.a < push.alpha_cutoff) discard;
+  if (base.a < push.alpha_cutoff) discard;
 
   vec3 transmitted = passing(base);
   if (kLayer == kClearLayer) {
@@ -53,7 +53,7 @@ void main() {
 
   SurfaceLight light = surface_light(local_position);
   uint cascade;
-  vec3 near = irradiance(light, local_position, shape, normal, mesh.sky_light, cascade);
+  vec3 near = irradiance(light, local_position, shape, normal, mesh.sky_light, push.kind >= kBlend, cascade);
   vec3 albedo = base.rgb;
   if (push.kind == kGlass) albedo *= 1.0 - push.transmission;
   if (push.kind == kBlend) albedo *= base.a;

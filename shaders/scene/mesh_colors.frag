@@ -15,5 +15,7 @@ void main() {
   // Only the sunward side of a closed body is drawn. (The maps are mirrored because v points up.)
   bool front = gl_FrontFacing != (handed > 0.0);
   if (!front && push.double_sided == 0u) discard;
-  left = vec4(passing(texture(base_color, uv) * push.color * vertex_color), gl_FragCoord.z);
+  vec4 base = texture(base_color, uv) * push.color * vertex_color;
+  if (base.a < push.alpha_cutoff) discard;
+  left = vec4(passing(base), gl_FragCoord.z);
 }

@@ -37,14 +37,15 @@ SurfaceLight surface_light(vec3 position) {
 }
 
 // Returns the irradiance on one side of a surface. `shape` is the triangle's normal, `normal` the shading normal.
-vec3 irradiance(SurfaceLight light, vec3 position, vec3 shape, vec3 normal, float sky_light, out uint cascade) {
+vec3 irradiance(SurfaceLight light, vec3 position, vec3 shape, vec3 normal, float sky_light, bool is_glass,
+                out uint cascade) {
   float up = 0.5 * (1.0 + dot(normal, light.up));
   vec3 sum = sky_light * (light.sky * up + light.bounced * (1.0 - up));
   cascade = mesh.cascade_count;
   float cosine = dot(normal, mesh.direction_to_sun);
   if (cosine > 0.0 && dot(shape, mesh.direction_to_sun) > 0.0) {
     float lit = sun_light_at(position, shape, cascade);
-    if (lit > 0.0) sum += light.sun * (lit * cosine) * sun_color_at(position, shape, cascade);
+    if (lit > 0.0) sum += light.sun * (lit * cosine) * sun_color_at(position, shape, cascade, is_glass);
   }
   return sum;
 }

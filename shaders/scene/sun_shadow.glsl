@@ -75,17 +75,22 @@ float sun_light_at(vec3 position, vec3 normal, out uint answered) {
 #ifdef SHADOW_COLORS
 layout(binding = SHADOW_COLORS) uniform sampler2DArray shadow_colors;
 
+// Covers half-float depths, which are rounded to 1/4096.
+const float kGlassTolerance = 0.0005;
+
 // Returns the colour of the light at a point of a map. Alpha is the depth of the glass nearest to the sun; light in
-// front of that glass is not coloured. The tolerance covers half-float depths, which are rounded to 1/4096.
+// front of that glass is not coloured.
 vec3 glass_color(vec3 place, float depth) {
   vec4 glass = texture(shadow_colors, place);
-  return depth + 0.0005 > glass.a ? glass.rgb : vec3(1.0);
+  return depth > glass.a ? glass.rgb : vec3(1.0);
 }
 
-// Returns the colour of the sunlight at a surface point for which sun_light_at() used `cascade`.
-vec3 sun_color_at(vec3 position, vec3 normal, uint cascade) {
+// Returns the colour of the sunlight at a surface point for which sun_light_at() used `cascade`. `is_glass`: the
+// surface is drawn into the colour maps itself, and its own colour does not affect the light that reaches it.
+vec3 sun_color_at(vec3 position, vec3 normal, uint cascade, bool is_glass) {
   if (SHADED.has_glass == 0u || cascade >= SHADED.cascade_count) return vec3(1.0);
   vec3 uvz = cascade_place(cascade, position, normal);
+  uvz.z += is_glass ? -kGlassTolerance : kGlassTolerance;
   if (SHADED.smooth_shadows == 0u) return glass_color(vec3(uvz.xy, float(cascade)), uvz.z);
   float texel = 1.0 / SHADED.shadow_resolution;
   vec3 color = vec3(0.0);

@@ -81,7 +81,7 @@ vec3 ground_radiance(GroundPoint point) {
   ground_light(point.altitude_m, dot(up, terrain.direction_to_sun), sun_on_plane, open_sky);
   vec3 sun = sun_on_plane * (lit * sun_cosine);
 #ifdef SHADOW_COLORS
-  if (lit > 0.0) sun *= sun_color_at(point.position, smooth_normal, cascade);
+  if (lit > 0.0) sun *= sun_color_at(point.position, smooth_normal, cascade, false);
 #endif
   float visible = sky_visibility(point.offset_m, point.altitude_m, point.layer);
   vec3 sky = open_sky * (visible * 0.5 * (1.0 + dot(normal, up)));

@@ -205,6 +205,9 @@ TEST_F(GpuMeshes, GlassColoursOnlyWhatIsBehindIt) {
   file_.level_quad(-6, -1, -4, 1, 4.0F, white_);  // between the glass and the sun
   // For comparison, a face at the same height and its shadow, without glass.
   file_.level_quad(4, -1, 6, 1, 4.0F, white_);
+  file_.level_quad(4, 3, 6, 5, 4.0F,
+                   file_.material({{"alphaMode", "BLEND"},
+                                   {"pbrMetallicRoughness", {{"baseColorFactor", {0.6, 0.6, 0.6, 0.9999}}}}}));
   scene_.sun.elevation_deg = 30.0F;
   const image::Image image = draw();
   const glm::dvec3 open = at(image, 0.0, 7.0);
@@ -220,6 +223,8 @@ TEST_F(GpuMeshes, GlassColoursOnlyWhatIsBehindIt) {
   EXPECT_LT(seen.y, 0.2 * seen.x);
   // Surfaces in front of the glass do not change.
   expect_near(at(image, -5.0, 0.0, 4.0), at(image, 5.0, 0.0, 4.0), 0.002, "before the glass");
+  expect_near(at(image, 5.0, 4.0, 4.0), at(image, 5.0, 0.0, 4.0), 0.002,
+              "a surface that is glass and hardly transparent");
 }
 
 TEST_F(GpuMeshes, DiffusingGlassGlowsAndHidesWhatIsBehind) {

@@ -86,7 +86,7 @@ TEST_F(SceneGltf, MorphTargetsMoveNormalsCoordinatesAndColours) {
   ASSERT_EQ(data.vertices.size(), 3U);
   EXPECT_EQ(data.vertices[0].normal, glm::vec3(1, 0, 0));
   EXPECT_EQ(data.vertices[1].uv, glm::vec2(3, 0));
-  EXPECT_EQ(data.vertices[0].color, 0xFFFF00FFU);
+  EXPECT_EQ(data.vertices[0].color, (MeshColor{0xFFFF, 0, 0xFFFF, 0xFFFF}));
 }
 
 TEST_F(SceneGltf, NormalsOfZeroLengthAreReplaced) {
@@ -229,7 +229,7 @@ TEST_F(SceneGltf, NumbersThatAreNotFiniteAreRefusedByName) {
   GltfFile file = triangle();
   primitive(file)["attributes"]["COLOR_0"] = file.floats({2, 0, 0, 1, 0, 0, 1, 0, 0}, 3);
   const MeshData data = load(file);
-  EXPECT_EQ(data.vertices[0].color, 0xFF0000FFU);
+  EXPECT_EQ(data.vertices[0].color, (MeshColor{0xFFFF, 0, 0, 0xFFFF}));
   expect_note(data, "COLOR_0 has values outside 0 to 1");
 }
 
@@ -283,7 +283,7 @@ TEST_F(SceneGltf, AccessorsWithoutDataAreZerosAndSparseOnesAreRead) {
   GltfFile black = triangle();
   black.root["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 3}});
   primitive(black)["attributes"]["COLOR_0"] = 1;
-  EXPECT_EQ(load(black).vertices[0].color, 0xFF000000U);
+  EXPECT_EQ(load(black).vertices[0].color, (MeshColor{0, 0, 0, 0xFFFF}));
 }
 
 TEST_F(SceneGltf, ExtensionsAreRefusedOrNotedByName) {

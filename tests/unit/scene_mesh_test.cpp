@@ -115,7 +115,7 @@ TEST_F(SceneMesh, QuantisedAndInterleavedAttributes) {
   EXPECT_EQ(data.vertices[1].position, glm::vec3(127, 0, 0));
   EXPECT_EQ(data.vertices[0].normal, glm::vec3(0, 0, -1));
   EXPECT_EQ(data.vertices[1].uv, glm::vec2(1, 0));
-  EXPECT_EQ(data.vertices[0].color, 0xFF8000FFU);
+  EXPECT_EQ(data.vertices[0].color, (MeshColor{0xFFFF, 0, 128 * 257, 0xFFFF}));
   EXPECT_EQ(data.vertices[5].position, glm::vec3(0, -1, 0));
   EXPECT_EQ(data.vertices[8].position, glm::vec3(7, 8, 10));
 }

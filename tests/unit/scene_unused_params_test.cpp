@@ -54,6 +54,24 @@ TEST(UnusedParams, AreNamedWithTheirReason) {
             2U);
 }
 
+TEST(UnusedParams, OfWhatIsNotDrawnAreNamed) {
+  EXPECT_EQ(unused({"epipolar.slices=64", "scattering.technique=brute-force"}),
+            Lines({"epipolar.slices has no effect with scattering.technique = brute-force"}));
+  EXPECT_EQ(unused({"epipolar.slices=64", "scattering.model=oneil"}),
+            Lines({"epipolar.slices has no effect with scattering.model = oneil"}));
+  EXPECT_EQ(unused({"froxels.columns=64"}), Lines({"froxels.columns has no effect with froxels.enabled = false"}));
+  EXPECT_EQ(unused({"froxels.columns=64", "scattering.technique=froxels"}), Lines());
+  EXPECT_EQ(unused({"meshes.scale=2"}), Lines({"meshes.scale has no effect with meshes.source = none"}));
+  EXPECT_EQ(unused({"meshes.scale=2", "meshes.source=hall"}), Lines());
+  EXPECT_EQ(unused({"moon.elevation_deg=30"}), Lines({"moon.elevation_deg has no effect with moon.visible = false"}));
+  EXPECT_EQ(unused({"moon.elevation_deg=30", "moon.light=true"}), Lines());
+  EXPECT_EQ(unused({"sun.animate_speed_deg=5"}),
+            Lines({"sun.animate_speed_deg has no effect with sun.animate = false"}));
+  EXPECT_EQ(unused({"terrain.units=degrees"}), Lines({"terrain.units has no effect with terrain.source = procedural"}));
+  EXPECT_EQ(unused({"terrain.units=degrees", "terrain.seed=2", "terrain.source=none"}),
+            Lines({"terrain.seed, terrain.units have no effect with terrain.source = none"}));
+}
+
 TEST(UnusedParams, ShippedScenesHaveNone) {
   int scenes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(TYNDALL_SOURCE_DIR "/scenes")) {

@@ -63,6 +63,16 @@ void check_air(const AtmosphereParams& air, const Check& check) {
   check(air.pressure_hpa > 0.0F, {"atmosphere.rayleigh_scattering"}, "atmosphere.pressure_hpa");
 }
 
+template <typename Check>
+void check_terrain_and_meshes(const SceneParams& scene, const Check& check) {
+  const std::string& source = scene.terrain.source;
+  check(source == "none", {"terrain.seed", "terrain.exaggeration", "terrain.shading", "terrain.units"},
+        "terrain.source = none");
+  check(source == "procedural", {"terrain.units"}, "terrain.source = procedural");
+  check(scene.meshes.source == "none", {"meshes.position_m", "meshes.scale", "meshes.yaw_deg", "meshes.sky_light"},
+        "meshes.source = none");
+}
+
 // Reports parameters of an exposure that is given in another way.
 template <typename Check>
 void check_exposure(const TonemapParams& tonemap, const Check& check) {
@@ -101,10 +111,11 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
   using Model = ScatteringModel;
   const Model model = scene.scattering.model;
   const bool by_effect = model == Model::atmosphere;
-  check(!by_effect,
-        {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single",
-         "scattering.multiple", "scattering.sections", "scattering.extinction", "homogeneous_medium."},
-        "scattering.model = " + std::string(drawn_model(params, scene).name));
+  check(
+      !by_effect,
+      {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single", "scattering.multiple",
+       "scattering.sections", "scattering.extinction", "homogeneous_medium.", "epipolar.", "froxels."},
+      "scattering.model = " + std::string(drawn_model(params, scene).name));
   check(by_effect, {"scattering.evaluate", "oneil.", "homogeneous."}, "scattering.model = atmosphere");
   check(model == Model::homogeneous, {"oneil."}, "scattering.model = homogeneous");
   check(model == Model::oneil, {"homogeneous.", "oneil.table_size"}, "scattering.model = oneil");
@@ -117,23 +128,27 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
   check(homogeneous, {"scattering.multiple", "scattering.sections", "scattering.extinction"},
         "scattering.medium = homogeneous");
   check(by_effect && params.scattering.technique == Technique::brute_force,
-        {"scattering.downscale", "scattering.extinction"}, "scattering.technique = brute-force");
+        {"scattering.downscale", "scattering.extinction", "epipolar."}, "scattering.technique = brute-force");
   check(by_effect && params.scattering.technique == Technique::froxels,
-        {"scattering.downscale", "scattering.extinction"}, "scattering.technique = froxels");
+        {"scattering.downscale", "scattering.extinction", "epipolar."}, "scattering.technique = froxels");
+  check(by_effect && params.froxels.enabled.value == 0 && params.scattering.technique != Technique::froxels,
+        {"froxels."}, "froxels.enabled = false");
 
   const bool custom = params.atmosphere.custom_coefficients.value != 0;
   check(!custom, {"atmosphere.rayleigh_scattering", "atmosphere.mie_scattering", "atmosphere.mie_absorption"},
         "atmosphere.custom_coefficients = false");
   check(custom, {"atmosphere.aerosol_absorption"}, "atmosphere.custom_coefficients = true");
   check_air(params.atmosphere, check);
-  check(scene.terrain.source == "none", {"terrain.seed", "terrain.exaggeration", "terrain.shading"},
-        "terrain.source = none");
+  check_terrain_and_meshes(scene, check);
 
   check(!scene.sun.time.empty(), {"sun.elevation_deg", "sun.azimuth_deg"}, "sun.time");
   check(scene.sun.time.empty(), {"sun.place"}, "an empty sun.time");
   check(scene.moon.by_date.value != 0, {"moon.elevation_deg", "moon.azimuth_deg", "moon.angular_radius_deg"},
         "moon.by_date = true");
   check(scene.moon.light.value == 0, {"moon.light_below_deg"}, "moon.light = false");
+  check(scene.moon.visible.value == 0 && scene.moon.light.value == 0,
+        {"moon.elevation_deg", "moon.azimuth_deg", "moon.angular_radius_deg", "moon.by_date"}, "moon.visible = false");
+  check(scene.sun.animate.value == 0, {"sun.animate_speed_deg"}, "sun.animate = false");
   using Op = TonemapOperator;
   const Op op = scene.tonemap.operator_;
   check_exposure(scene.tonemap, check);

@@ -61,6 +61,8 @@ glm::dmat4 GltfVertices::skinned(std::size_t i) const {
   return joints->front();
 }
 
+bool GltfVertices::mirrored() const { return joints != nullptr && glm::determinant(glm::dmat3(joints->front())) < 0.0; }
+
 MeshVertex GltfVertices::at(std::size_t i) const {
   MeshVertex out;
   glm::dvec3 p = morphed(position, &Target::position, i);
@@ -72,7 +74,7 @@ MeshVertex GltfVertices::at(std::size_t i) const {
     // Normals are transformed by the cofactor matrix, which is also correct for singular matrices.
     const glm::dmat3 c(glm::cross(glm::dvec3(m[1]), glm::dvec3(m[2])), glm::cross(glm::dvec3(m[2]), glm::dvec3(m[0])),
                        glm::cross(glm::dvec3(m[0]), glm::dvec3(m[1])));
-    n = c * n;
+    n = mirrored() ? -(c * n) : c * n;
   }
   // Every input is finite, but sums and products can leave the range of floats.
   for (int c = 0; c < 3; ++c) {
@@ -91,10 +93,10 @@ MeshVertex GltfVertices::at(std::size_t i) const {
   }
   if (!color.empty()) {
     const glm::dvec4 x = morphed(color, &Target::color, i);
-    out.color = 0;
     for (int c = 0; c < 4; ++c) {
       clamped = clamped || x[c] > 1.001 || x[c] < -0.001;
-      out.color |= static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(x[c], 0.0, 1.0))) << (8 * c);
+      out.color[static_cast<std::size_t>(c)] =
+          static_cast<std::uint16_t>(std::lround(65535.0 * std::clamp(x[c], 0.0, 1.0)));
     }
   }
   return out;
@@ -144,8 +146,11 @@ void GltfReader::read_primitive(const GltfPrimitive& primitive, const std::strin
   if (primitive.draco) draco = decode_draco(document_, primitive, data_.view(primitive.draco->view), where);
   const DracoMesh* const decoded = draco ? &*draco : nullptr;
   const GltfVertices read = vertices(primitive, where, decoded, shape, joints);
-  const std::vector<std::uint32_t> corners =
+  std::vector<std::uint32_t> corners =
       draco ? std::move(draco->corners) : triangles(primitive, where, read.position.count);
+  if (read.mirrored()) {
+    for (std::size_t t = 0; t + 2 < corners.size(); t += 3) std::swap(corners[t + 1], corners[t + 2]);
+  }
   emit(read, corners, material_of(primitive, !read.uv.empty(), where));
   // Morphed colours are clamped by the specification.
   if (read.clamped && read.targets.empty())

@@ -115,6 +115,31 @@ std::optional<std::string> fault_of_jpeg(std::string_view bytes, std::uint64_t w
   return {};
 }
 
+// Returns whether a material draws its texture without regard to alpha.
+bool ignores_alpha(const MeshMaterial& material) {
+  return material.kind != SurfaceKind::blend && material.alpha_cutoff == 0.0F;
+}
+
+bool is_opaque(const MeshTexture& texture) {
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) {
+    if (texture.rgba[i] != 255) return false;
+  }
+  return true;
+}
+
+// Returns whether the colours of vertices may make a material transparent.
+bool has_vertex_alpha(const GltfDocument& document, std::size_t material) {
+  for (const GltfMesh& mesh : document.meshes) {
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      const auto color = primitive.attributes.find("COLOR_0");
+      if (primitive.material == static_cast<int>(material) && color != primitive.attributes.end() &&
+          document.accessors[static_cast<std::size_t>(color->second)].components == 4)
+        return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 void GltfReader::read_materials() {
@@ -126,19 +151,24 @@ void GltfReader::read_materials() {
       const GltfTexture& texture = document_.textures[index];
       out.sampler = texture.sampler;
       if (texture.image >= 0)
-        out.texture = read_image(static_cast<std::size_t>(texture.image));
+        out.texture = read_image(static_cast<std::size_t>(texture.image), ignores_alpha(out));
       else
         note_each("texture",
                   at("textures", index) + " has no PNG or JPEG picture and is left out of " + at("materials", i));
     }
+    // Exporters often choose BLEND for opaque surfaces.
+    const bool opaque_texture = out.texture < 0 || is_opaque(out_.textures[static_cast<std::size_t>(out.texture)]);
+    if (out.kind == SurfaceKind::blend && out.color.a == 1.0F && opaque_texture && !has_vertex_alpha(document_, i))
+      out.kind = SurfaceKind::opaque;
     out_.materials.push_back(std::move(out));
   }
   out_.materials.emplace_back();  // used by parts without a material
 }
 
-// Returns the index of a texture's picture, which is decoded at the first call.
-int GltfReader::read_image(std::size_t index) {
-  const auto known = decoded_.find(static_cast<int>(index));
+// Returns the index of a texture's picture, which is decoded at the first call. If it is `opaque`, its alpha is
+// ignored, also by the weights of its mip levels.
+int GltfReader::read_image(std::size_t index, bool opaque) {
+  const auto known = decoded_.find({index, opaque});
   if (known != decoded_.end()) return known->second;
   const GltfImage& image = document_.images[index];
   const std::string name = at("images", index);
@@ -177,8 +207,14 @@ int GltfReader::read_image(std::size_t index) {
   out.width = static_cast<std::uint32_t>(width);
   out.height = static_cast<std::uint32_t>(height);
   out.rgba.assign(pixels.get(), pixels.get() + 4ULL * out.width * out.height);
+  const bool has_alpha = !is_opaque(out);
+  if (opaque && has_alpha) {
+    for (std::size_t i = 3; i < out.rgba.size(); i += 4) out.rgba[i] = 255;
+  }
   out_.textures.push_back(std::move(out));
-  return decoded_[static_cast<int>(index)] = static_cast<int>(out_.textures.size()) - 1;
+  const int texture = static_cast<int>(out_.textures.size()) - 1;
+  if (!has_alpha) decoded_[{index, !opaque}] = texture;
+  return decoded_[{index, opaque}] = texture;
 }
 
 std::uint32_t GltfReader::material_of(const GltfPrimitive& primitive, bool has_coordinates, const std::string& where) {

@@ -68,7 +68,8 @@ void alpha_mode(const GltfJson& json, MeshMaterial& out) {
     json.refuse("alphaMode", "expected OPAQUE, MASK and BLEND");
   }
   const double cutoff = json.bounded("alphaCutoff", 0.0, std::numeric_limits<double>::max(), 0.5);
-  out.alpha_cutoff = static_cast<float>(std::min(cutoff, 2.0));  // all values above 1 make the surface disappear
+  // All values above 1 make the surface disappear.
+  if (out.kind == SurfaceKind::mask) out.alpha_cutoff = static_cast<float>(std::min(cutoff, 2.0));
 }
 
 GltfMaterial material(const GltfJson& json, std::set<std::string>& undrawn) {
@@ -90,7 +91,10 @@ GltfMaterial material(const GltfJson& json, std::set<std::string>& undrawn) {
   }
   if (const auto transmission = json.extension("KHR_materials_transmission")) {
     out.drawn.transmission = static_cast<float>(transmission->bounded("transmissionFactor", 0.0, 1.0, 0.0));
-    if (out.drawn.transmission > 0.0F) out.drawn.kind = SurfaceKind::glass;
+    if (out.drawn.transmission > 0.0F) {
+      if (out.drawn.kind == SurfaceKind::blend) undrawn.insert("alpha of materials with transmission");
+      out.drawn.kind = SurfaceKind::glass;
+    }
     if (transmission->has("transmissionTexture")) undrawn.insert("transmission textures");
   }
   glm::dvec3 emission(0.0);

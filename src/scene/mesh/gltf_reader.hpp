@@ -35,6 +35,8 @@ struct GltfVertices {
   mutable bool unweighted = false;  // a vertex has no joint
 
   [[nodiscard]] MeshVertex at(std::size_t i) const;
+  // Returns whether the joints mirror the mesh, which turns its triangles over.
+  [[nodiscard]] bool mirrored() const;
 
  private:
   [[nodiscard]] glm::dvec4 morphed(const GltfValues& base, GltfValues Target::*target, std::size_t i) const;
@@ -58,7 +60,7 @@ class GltfReader {
   void note_each(const char* kind, const std::string& text);
 
   void read_materials();
-  int read_image(std::size_t index);
+  int read_image(std::size_t index, bool opaque);
   // Returns the material of a primitive, without its texture if the primitive has no texture coordinates.
   std::uint32_t material_of(const GltfPrimitive& primitive, bool has_coordinates, const std::string& where);
 
@@ -82,9 +84,9 @@ class GltfReader {
   std::map<Shape, std::vector<glm::dmat4>> placed_;
   std::vector<int> parents_;  // the parent of each node; -1 for roots
   std::map<std::string, std::pair<std::string, std::size_t>>
-      counted_;                              // by kind: the first text and the number of texts
-  std::map<int, int> decoded_;               // the texture of each decoded image
-  std::map<int, std::uint32_t> untextured_;  // the copy without a texture of a material
+      counted_;                                          // by kind: the first text and the number of texts
+  std::map<std::pair<std::size_t, bool>, int> decoded_;  // the texture of each decoded image, and whether it is opaque
+  std::map<int, std::uint32_t> untextured_;              // the copy without a texture of a material
   std::uint64_t texture_bytes_ = 0, visits_ = 0, instances_ = 0;
 };
 

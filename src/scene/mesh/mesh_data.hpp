@@ -2,6 +2,7 @@
 // place the meshes. Created from glTF files (gltf_file.hpp) or in code (hall.hpp).
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -18,18 +19,20 @@ constexpr std::uint64_t kMaxMeshInstances = 1U << 18U;
 constexpr std::uint32_t kMaxTextureSide = 8192;
 constexpr std::uint64_t kMaxTextureBytes = std::uint64_t{1} << 30U;  // total of all textures, without mip levels
 
-// The layout of shaders/scene/mesh_vertex.glsl: nine words without padding.
+using MeshColor = std::array<std::uint16_t, 4>;  // linear RGBA, 0xFFFF is 1
+
+// The layout of shaders/scene/mesh_vertex.glsl: ten words without padding.
 struct MeshVertex {
   glm::vec3 position = {};
   glm::vec3 normal = {0, 1, 0};  // unit length
   glm::vec2 uv = {};
-  std::uint32_t color = 0xFFFFFFFFU;  // factor of the material's colour: linear RGBA8 with red in the lowest byte
+  MeshColor color = {0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF};  // factor of the material's colour
 };
-static_assert(sizeof(MeshVertex) == 36);
+static_assert(sizeof(MeshVertex) == 40);
 
 enum class SurfaceKind : std::uint32_t {
   opaque,
-  mask,   // texels with alpha below the cutoff are holes
+  mask,   // opaque with holes
   blend,  // transmits the fraction 1 - alpha of light, tinted
   glass,  // transmits light, multiplied by the colour
 };
@@ -51,7 +54,7 @@ struct MeshMaterial {
   int texture = -1;                   // sRGB, multiplied by the colour; -1: none
   MeshSampler sampler;
   SurfaceKind kind = SurfaceKind::opaque;
-  float alpha_cutoff = 0.5F;
+  float alpha_cutoff = 0.0F;  // texels with a smaller alpha are holes; 0: none
   float transmission = 0.0F;  // glass only: fraction of light that is not reflected diffusely
   float roughness = 1.0F;     // glass only: from kRoughGlass on it diffuses transmitted light, below it is clear
   bool double_sided = false;
