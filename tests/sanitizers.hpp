@@ -18,10 +18,5 @@ constexpr bool kSanitizers = true;
 #else
 constexpr bool kSanitizers = false;
 #endif
-#ifdef TYNDALL_THREAD_SANITIZER
-constexpr bool kThreadSanitizer = true;
-#else
-constexpr bool kThreadSanitizer = false;
-#endif
 
 }  // namespace tyndall
