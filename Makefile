@@ -26,10 +26,11 @@
 #   make second-driver   runs every GPU test and the examples on SwiftShader
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
 #   make interruptions   interrupts the program at INTERRUPTIONS (200) random moments, and checks what is left
+#   make malformed       gives every verb MALFORMED (150) malformed files of each kind that it reads, and checks how it ends
 #   make slurm-test      installs Slurm and GNU parallel, and runs the commands of docs/batch.md with them
 #   make phase-limits    measures the errors of narrow phase functions, docs/generated/phase.md
 #   make twilight        writes the table of illuminances by the sun's elevation, docs/generated/twilight.md
-.PHONY: fuzz soak interruptions slurm-test python-figures demo check doxygen pictures accuracy epipolar-study models-study twilight bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
+.PHONY: fuzz soak interruptions malformed slurm-test python-figures demo check doxygen pictures accuracy epipolar-study models-study twilight bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 # The CPU device that computes the values that `tyndall report` compares other devices with.
@@ -291,6 +292,13 @@ second-driver: PRESET = ci
 second-driver: build
 	@tools/second_driver.sh build/second_driver
 	@ctest --preset ci -C second_driver --no-tests=error -L second_driver $(if $(SUITES),-R '$(SUITES)')
+
+# Malformed files through the command line; the fuzzers call the readers directly.
+MALFORMED ?= 150
+malformed: PRESET = ci
+malformed: TARGETS = tyndall
+malformed: build
+	@/usr/bin/python3 -B tools/malformed.py build/release/bin/tyndall --count $(MALFORMED) --work build/malformed
 
 # Signals at random moments of render, sky, tables, probe and validate, and at every write of the viewer while it saves.
 INTERRUPTIONS ?= 200
