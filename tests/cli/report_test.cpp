@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "../sanitizers.hpp"
 #include "run_tyndall.hpp"
 
 namespace tyndall::cli {
@@ -97,13 +98,15 @@ TEST(Report, LeavesOutWhatDoesNotFinishInTime) {
   std::filesystem::create_directories(data);
   std::filesystem::create_directory_symlink(TYNDALL_SCENES, data + "/scenes");
   const std::string folder = scratch.at("report");
-  // Ten seconds do not suffice for everything, on any CPU device.
-  const ProcessResult made = run_tyndall({"report", "--data", data, "-o", folder, "--seconds", "10"});
+  // Too little for everything, on any CPU device, but enough for its first parts.
+  const int seconds = kSanitizers ? 100 : 10;
+  const ProcessResult made =
+      run_tyndall({"report", "--data", data, "-o", folder, "--seconds", std::to_string(seconds)});
   ASSERT_EQ(made.status, 0) << made.err;
   const nlohmann::json report = nlohmann::json::parse(contents_of(folder + "/report.json"));
-  EXPECT_LT(report["seconds"], 20.0);
+  EXPECT_LT(report["seconds"], 2.0 * seconds);
   EXPECT_NE(find(report["left_out"], "why", "no values of the CPU device"), nullptr);
-  const bool in_time = report["times"].size() >= 12;
+  const bool in_time = report.value("times", nlohmann::json::array()).size() >= 12;
   EXPECT_TRUE(in_time || find(report["left_out"], "why", "no time was left") != nullptr) << report["left_out"].dump(1);
 }
 
