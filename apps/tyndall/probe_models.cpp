@@ -200,7 +200,8 @@ CpuModel homogeneous_model(const Params& params, const scene::SceneParams& scene
   out.answer = [medium](const RayQuery& q) -> models::Answer {
     if (!q.sky_irradiance) return models::homogeneous_light(medium, models::ray_from_query(q));
     const double cos_sun = std::cos(q.sun_zenith_rad);
-    return {models::homogeneous_sky_irradiance(medium, cos_sun), models::homogeneous_sun(medium, cos_sun)};
+    return {models::homogeneous_sky_irradiance(medium, q.altitude_m, cos_sun),
+            models::homogeneous_sun(medium, q.altitude_m, cos_sun)};
   };
   return out;
 }

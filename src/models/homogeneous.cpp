@@ -54,19 +54,25 @@ Answer homogeneous_light(const shared::Homogeneous& medium, const Ray& ray) {
   return {glsl64::to_array(radiance * glsl64::homogeneous_sun(m, path.mu_s)), glsl64::to_array(extinction)};
 }
 
-std::array<double, 3> homogeneous_sky_irradiance(const shared::Homogeneous& medium, double cos_sun_zenith) {
+std::array<double, 3> homogeneous_sky_irradiance(const shared::Homogeneous& medium, double altitude_m,
+                                                 double cos_sun_zenith) {
   const glsl64::Homogeneous m = widen(medium);
-  const glsl64::vec3 sun = glsl64::homogeneous_sun(m, cos_sun_zenith);
-  if (sun == glsl64::vec3(0.0)) return {};
+  const bool in_space = altitude_m > m.atmosphere_height_m;
+  if (in_space || glsl64::homogeneous_sun(m, cos_sun_zenith) == glsl64::vec3(0.0)) return {};
   return hemisphere_irradiance(cos_sun_zenith, kZenithPanels, kAzimuths, [&](double mu, double nu) {
-    glsl64::vec3 extinction;
-    const glsl64::HomogeneousPath path = glsl64::homogeneous_path(m, 0.0, mu, cos_sun_zenith, nu, -1.0);
-    return glsl64::to_array(glsl64::homogeneous_inscattering(m, path, nu, extinction) * sun);
+    return homogeneous_light(medium, {altitude_m, mu, cos_sun_zenith, nu}).radiance;
   });
 }
 
-std::array<double, 3> homogeneous_sun(const shared::Homogeneous& medium, double cos_sun_zenith) {
-  return glsl64::to_array(glsl64::homogeneous_sun(widen(medium), cos_sun_zenith));
+std::array<double, 3> homogeneous_sun(const shared::Homogeneous& medium, double altitude_m, double cos_sun_zenith) {
+  const glsl64::Homogeneous m = widen(medium);
+  if (altitude_m <= m.atmosphere_height_m) {
+    const glsl64::vec3 at_ground = glsl64::homogeneous_sun(m, cos_sun_zenith);
+    if (m.falloff == 0U || at_ground == glsl64::vec3(0.0)) return glsl64::to_array(at_ground);
+  } else if (glsl64::sun_visibility(altitude_m, cos_sun_zenith, m.planet_radius_m) == 0.0) {
+    return {};
+  }
+  return homogeneous_light(medium, {altitude_m, cos_sun_zenith, cos_sun_zenith, 1.0}).transmittance;
 }
 
 }  // namespace tyndall::models

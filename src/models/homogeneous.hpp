@@ -25,11 +25,14 @@ struct HomogeneousLengths {
 // Returns radiance / E0 and transmittance along a ray to the ground or out of the atmosphere, over black ground.
 [[nodiscard]] Answer homogeneous_light(const shared::Homogeneous& medium, const Ray& ray);
 
-// Returns the horizontal irradiance / E0 of the sky at the ground.
-[[nodiscard]] std::array<double, 3> homogeneous_sky_irradiance(const shared::Homogeneous& medium,
+// Returns the horizontal irradiance / E0 of the sky at an altitude. Without falloff, it is that at the ground
+// everywhere inside the atmosphere. It is 0 in space, and if the sun is below the horizontal.
+[[nodiscard]] std::array<double, 3> homogeneous_sky_irradiance(const shared::Homogeneous& medium, double altitude_m,
                                                                double cos_sun_zenith);
 
-// Returns the transmittance of sunlight to the ground: 0 if the sun is below the horizontal.
-[[nodiscard]] std::array<double, 3> homogeneous_sun(const shared::Homogeneous& medium, double cos_sun_zenith);
+// Returns the transmittance of sunlight to an altitude: 0 if the sun is below the horizontal, or, in space, behind the
+// planet. Without falloff, it is that at the ground everywhere inside the atmosphere.
+[[nodiscard]] std::array<double, 3> homogeneous_sun(const shared::Homogeneous& medium, double altitude_m,
+                                                    double cos_sun_zenith);
 
 }  // namespace tyndall::models

@@ -104,6 +104,9 @@ shared::ProbeRay prepare_probe_ray(const shared::Medium& medium, const Ray& ray)
     }
     out.end_m = static_cast<float>(end - start);
     out.on_ground = on_ground ? 1 : 0;
+  } else {
+    // A downward ray that begins on the ground has length 0 and still sees the ground.
+    out.on_ground = glsl64::ray_hits_ground(altitude, cos_view, m.planet_radius_m) ? 1 : 0;
   }
   out.altitude_m = static_cast<float>(altitude);
   out.cos_view_zenith = static_cast<float>(cos_view);

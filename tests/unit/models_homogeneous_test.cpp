@@ -102,7 +102,7 @@ TEST(Homogeneous, TheSkyIsThePrintedTwoShells) {
       const double e_sun = p.sun(printed_length(c.lengths.air_m, sun_deg), printed_length(c.lengths.haze_m, sun_deg));
       expect_close(answer.radiance[k], p.sky(e_sun, air_m, haze_m, cos_theta), "sky", i);
       expect_close(answer.transmittance[k], p.sun(air_m, haze_m), "extinction of the sky", i);
-      expect_close(models::homogeneous_sun(medium, std::cos(sun_deg * kPi / 180.0))[k], e_sun, "sun", i);
+      expect_close(models::homogeneous_sun(medium, 0.0, std::cos(sun_deg * kPi / 180.0))[k], e_sun, "sun", i);
     }
   }
 }
@@ -201,8 +201,8 @@ TEST(Homogeneous, NightSpaceAndEveryRayAreDefined) {
     EXPECT_EQ(space.radiance, (Rgb{0.0, 0.0, 0.0}));
     EXPECT_EQ(space.transmittance, (Rgb{1.0, 1.0, 1.0}));
   }
-  EXPECT_EQ(models::homogeneous_sky_irradiance(medium, -0.001), (Rgb{0.0, 0.0, 0.0}));
-  EXPECT_EQ(models::homogeneous_sun(medium, -0.001), (Rgb{0.0, 0.0, 0.0}));
+  EXPECT_EQ(models::homogeneous_sky_irradiance(medium, 0.0, -0.001), (Rgb{0.0, 0.0, 0.0}));
+  EXPECT_EQ(models::homogeneous_sun(medium, 0.0, -0.001), (Rgb{0.0, 0.0, 0.0}));
 }
 
 // With densities that fall with altitude, results at the ground are the published ones, space is transparent, and a
@@ -249,8 +249,40 @@ TEST(Homogeneous, TheSkysIrradianceIsTheSumOfTheSky) {
         for (std::size_t c = 0; c < 3; ++c) sum[c] += answer.radiance[c] * weight;
       }
     }
-    const Rgb found = models::homogeneous_sky_irradiance(medium, std::cos(sun));
+    const Rgb found = models::homogeneous_sky_irradiance(medium, 0.0, std::cos(sun));
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(found[c], sum[c], 2e-3 * sum[c]) << sun;
+  }
+}
+
+// The irradiance and the sunlight of an eye at an altitude agree with the rays that it sees there.
+TEST(Homogeneous, IrradianceAndSunlightFollowTheAltitude) {
+  models::HomogeneousLengths lengths;
+  const shared::Homogeneous constant = models::homogeneous_from_params({}, lengths);
+  lengths.falloff = true;
+  const shared::Homogeneous falling = models::homogeneous_from_params({}, lengths);
+  constexpr double kSun = 0.7;
+  const double cos_sun = std::cos(kSun);
+  double last = 1.0;
+  for (const double altitude : {0.0, 1000.0, 20000.0, 50000.0}) {
+    const models::Answer to_sun =
+        models::homogeneous_light(falling, models::ray_from_angles(altitude, kSun, kSun, 0.0));
+    const Rgb sun = models::homogeneous_sun(falling, altitude, cos_sun);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(sun[k], to_sun.transmittance[k], 1e-9) << altitude;
+    // The sky's radiance falls with the density, and so does its irradiance.
+    const double sky = models::homogeneous_sky_irradiance(falling, altitude, cos_sun)[1];
+    EXPECT_LT(sky, last);
+    EXPECT_GT(sky, 0.0);
+    last = sky;
+    EXPECT_EQ(models::homogeneous_sky_irradiance(constant, altitude, cos_sun),
+              models::homogeneous_sky_irradiance(constant, 0.0, cos_sun));
+    EXPECT_EQ(models::homogeneous_sun(constant, altitude, cos_sun), models::homogeneous_sun(constant, 0.0, cos_sun));
+  }
+  EXPECT_LT(last, 0.01 * models::homogeneous_sky_irradiance(falling, 0.0, cos_sun)[1]);
+  for (const shared::Homogeneous& medium : {constant, falling}) {
+    EXPECT_EQ(models::homogeneous_sky_irradiance(medium, 1e7, cos_sun), Rgb{});
+    // From 10 000 km, the planet reaches 23 degrees from the nadir.
+    EXPECT_EQ(models::homogeneous_sun(medium, 1e7, std::cos(100.0 * kPi / 180.0)), (Rgb{1.0, 1.0, 1.0}));
+    EXPECT_EQ(models::homogeneous_sun(medium, 1e7, std::cos(170.0 * kPi / 180.0)), Rgb{});
   }
 }
 

@@ -62,8 +62,8 @@ class HomogeneousSky : public SkyModel {
     out.eye_cos_sun = static_cast<float>(cos_sun);
     out.to_sun = to_vec3(frame.local.direction(frame.light.direction_to_sun));
     out.in_space = altitude > static_cast<double>(frame.params.atmosphere.height_m) ? 1 : 0;
-    out.sun_on_ground = narrow(models::homogeneous_sun(out.medium, cos_sun));
-    out.sky_on_ground = narrow(models::homogeneous_sky_irradiance(out.medium, cos_sun));
+    out.sun_on_ground = narrow(models::homogeneous_sun(out.medium, 0.0, cos_sun));
+    out.sky_on_ground = narrow(models::homogeneous_sky_irradiance(out.medium, 0.0, cos_sun));
     out.air_shown = frame.params.scattering.enabled.value != 0 ? 1.0F : 0.0F;
     out.ground_shown = frame.params.scattering.only.value != 0 ? 0.0F : 1.0F;
     out.sun_irradiance = frame.light.sun_irradiance;
@@ -79,7 +79,7 @@ class HomogeneousSky : public SkyModel {
     if (std::memcmp(&medium, &known_, sizeof medium) != 0) {
       for (std::size_t i = 0; i < kHomogeneousSuns; ++i) {
         const double root = static_cast<double>(i) / (kHomogeneousSuns - 1);
-        const Vec3 sky = narrow(models::homogeneous_sky_irradiance(medium, root * root));
+        const Vec3 sky = narrow(models::homogeneous_sky_irradiance(medium, 0.0, root * root));
         const float row[4] = {sky.x, sky.y, sky.z, 0.0F};
         std::memcpy(sky_by_sun_[i], row, sizeof row);
       }
