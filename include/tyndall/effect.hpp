@@ -155,8 +155,8 @@ struct Camera {
 
 struct Sun {
   Vec3 direction_to_sun = {0.0F, 1.0F, 0.0F};  // unit length, towards the sun
-  Vec3 irradiance = Vec3(10.0F);  // [>= 0] - above the atmosphere, at normal incidence; times scattering.scale
-  float angular_radius_rad = 0.004655F;
+  Vec3 irradiance = Vec3(10.0F);         // [>= 0] - above the atmosphere, at normal incidence; times scattering.scale
+  float angular_radius_rad = 0.004655F;  // [rad] - for tyndall_sun_irradiance() of shaders; frames do not depend on it
 };
 
 // Clouds or fog of the caller between the sun and the scene, as a layer that is seen from the sun (docs/clouds.md).

@@ -225,7 +225,7 @@ typedef struct TyndallCamera {
 typedef struct TyndallSun {
   float direction_to_sun[3];
   float irradiance[3];
-  float angular_radius_rad;
+  float angular_radius_rad;  // for tyndall_sun_irradiance() of shaders; frames do not depend on it
 } TyndallSun;
 
 typedef struct TyndallClouds {

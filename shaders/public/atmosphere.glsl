@@ -238,7 +238,7 @@ vec3 tyndall_apply(TyndallFroxel froxel, vec3 color) {
 TyndallFroxel tyndall_froxel(vec2 uv, float distance_m) {
   vec3 at = vec3(uv, froxel_coordinate(distance_m, tyndall_constants.froxel_near_m, tyndall_constants.froxel_far_m,
                                        tyndall_constants.froxel_slices));
-  return TyndallFroxel(textureLod(froxel_inscattering, at, 0.0).rgb * tyndall_constants.sun_irradiance,
+  return TyndallFroxel(textureLod(froxel_inscattering, at, 0.0).rgb * tyndall_constants.froxel_irradiance,
                        CHANNELS(textureLod(froxel_transmittance, at, 0.0)));
 }
 

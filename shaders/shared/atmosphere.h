@@ -20,6 +20,8 @@ struct AtmosphereConstants {
   float froxel_far_m;
   float froxel_slices;
   float unused_0;
+  vec3 froxel_irradiance;  // of the sun on the medium of the froxel volume
+  float unused_1;
   vec4 cloud_u;  // rows of the matrix from the caller's coordinates to (u, v, depth) of the map of clouds
   vec4 cloud_v;
   vec4 cloud_depth;

@@ -9,6 +9,7 @@
 #include "effect/frame_constants.hpp"
 #include "effect/frame_geometry.hpp"
 #include "effect/medium.hpp"
+#include "effect/modes.hpp"
 #include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
 #include "gpu/guard.hpp"
@@ -21,18 +22,28 @@ Error invalid_atmosphere(const char* what) {
   return {ErrorCode::invalid_argument, std::string("atmosphere_constants: ") + what};
 }
 
-Result<void> check(const AtmosphereInputs& inputs) {
+// Returns whether a number is finite in single precision, which the constants have.
+bool is_float(double value) { return std::isfinite(static_cast<float>(value)); }
+
+Result<void> check(const AtmosphereInputs& inputs, double scale) {
   const Vec3& d = inputs.sun.direction_to_sun;
   const Vec3& e = inputs.sun.irradiance;
   const double direction = length({d.x, d.y, d.z});
-  if (!std::isfinite(length(inputs.origin_from_centre_m))) {
-    return invalid_atmosphere("origin_from_centre_m is not finite; expected metres");
+  const double radius = length(inputs.origin_from_centre_m);
+  if (!is_float(radius)) {
+    return invalid_atmosphere(std::isfinite(radius) ? "origin_from_centre_m exceeds 3e38; expected metres"
+                                                    : "origin_from_centre_m is not finite; expected metres");
   }
   if (!std::isfinite(direction) || direction < 1e-6) {
     return invalid_atmosphere("direction_to_sun has no direction; expected a vector of length 1");
   }
-  if (!std::isfinite(e.x + e.y + e.z) || e.x < 0.0F || e.y < 0.0F || e.z < 0.0F) {
-    return invalid_atmosphere("irradiance is negative or not finite; expected at least 0");
+  for (const float channel : {e.x, e.y, e.z}) {
+    if (!std::isfinite(channel) || channel < 0.0F) {
+      return invalid_atmosphere("irradiance is negative or not finite; expected at least 0");
+    }
+    if (!is_float(channel * scale)) {
+      return invalid_atmosphere("irradiance times scattering.scale is too large; expected at most 3e38");
+    }
   }
   if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
     return invalid_atmosphere("angular_radius_rad is negative or not finite; expected at least 0");
@@ -67,6 +78,11 @@ shared::AtmosphereConstants constants_of(const Params& params, const AtmosphereI
   out.froxel_near_m = params.froxels.near_m;
   out.froxel_far_m = params.froxels.far_m;
   out.froxel_slices = static_cast<float>(params.froxels.slices);
+  out.froxel_irradiance = out.sun_irradiance;
+  if (is_homogeneous(params.scattering)) {
+    const Vec3& arrives = params.homogeneous_medium.sunlight;
+    out.froxel_irradiance = {e.x * scale * arrives.x, e.y * scale * arrives.y, e.z * scale * arrives.z};
+  }
   const Mat4& clouds = inputs.clouds_from_position;
   const auto row = [&clouds](int i) {
     return shared::vec4(clouds.m[i], clouds.m[4 + i], clouds.m[8 + i], clouds.m[12 + i]);
@@ -82,7 +98,7 @@ shared::AtmosphereConstants constants_of(const Params& params, const AtmosphereI
 Result<AtmosphereConstants> atmosphere_constants(const Params& params, const AtmosphereInputs& inputs) {
   return guarded("atmosphere_constants", [&]() -> Result<AtmosphereConstants> {
     TYNDALL_TRY(check_params(params));
-    TYNDALL_TRY(check(inputs));
+    TYNDALL_TRY(check(inputs, params.scattering.scale));
     const shared::AtmosphereConstants constants = constants_of(params, inputs);
     // With the macro TYNDALL_SPECTRAL, the medium at the beginning is larger.
     const shared::SpectralMedium medium = spectral_medium_from_params(params);

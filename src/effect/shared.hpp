@@ -46,7 +46,7 @@ struct SpectralMedium : Medium {
 };
 
 static_assert(sizeof(OneilScale) == 32 && sizeof(Oneil) == 96, "the layout of Oneil must agree with std430");
-static_assert(sizeof(AtmosphereConstants) == 240, "the layout of AtmosphereConstants must agree with std140");
+static_assert(sizeof(AtmosphereConstants) == 256, "the layout of AtmosphereConstants must agree with std140");
 static_assert(sizeof(SpectralMedium) == sizeof(Medium) + 16 && sizeof(FrameConstants) % 16 == 0,
               "the layouts of spectral quantities must agree with std430");
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");

@@ -3,10 +3,12 @@
 // tests/package/consume.cmake compares both. All cases share one build of the default tables.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <optional>
 #include <random>
 
 #include "atmosphere_points.hpp"
+#include "effect/shared.hpp"
 #include "effect_frame.hpp"
 #include "models/precomputed.hpp"
 
@@ -254,9 +256,37 @@ TEST_F(AtmosphereGlsl, RefusesInputsWithoutMeaning) {
   inputs = {};
   inputs.sun.irradiance.y = -1.0F;
   EXPECT_NE(message().find("irradiance is negative or not finite; expected"), std::string::npos) << message();
+  inputs.sun.irradiance = Vec3(3e38F);
+  EXPECT_EQ(message(), "");
+  params.scattering.scale = 10.0F;
+  EXPECT_NE(message().find("irradiance times scattering.scale is too large; expected"), std::string::npos) << message();
+  params = {};
+  inputs = {};
+  inputs.origin_from_centre_m.x = 1e39;
+  EXPECT_NE(message().find("origin_from_centre_m exceeds"), std::string::npos) << message();
   inputs = {};
   params.atmosphere.mie_g = 2.0F;
   EXPECT_NE(message().find("atmosphere.mie_g"), std::string::npos) << message();
+}
+
+// The volume of a homogeneous medium is lit by the sunlight that arrives there.
+TEST_F(AtmosphereGlsl, FroxelsHaveTheSunlightOfTheirMedium) {
+  AtmosphereInputs inputs;
+  inputs.sun.irradiance = {2.0F, 3.0F, 5.0F};
+  Params params;
+  params.scattering.scale = 2.0F;
+  params.homogeneous_medium.sunlight = {0.5F, 0.25F, 0.125F};
+  for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
+    params.scattering.medium = medium;
+    const Result<AtmosphereConstants> made = atmosphere_constants(params, inputs);
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    shared::AtmosphereConstants constants = {};
+    std::memcpy(&constants, made.value().bytes.data(), sizeof constants);
+    const glm::vec3 light(constants.froxel_irradiance.x, constants.froxel_irradiance.y, constants.froxel_irradiance.z);
+    const bool homogeneous = medium == MediumKind::homogeneous;
+    EXPECT_EQ(light, homogeneous ? glm::vec3(2.0F, 1.5F, 1.25F) : glm::vec3(4.0F, 6.0F, 10.0F));
+    EXPECT_EQ(constants.sun_irradiance.x, 4.0F);
+  }
 }
 
 }  // namespace
