@@ -382,6 +382,14 @@ Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source
 
 }  // namespace
 
+// Shifts longitudes by whole turns, so that the middle of the file lies between -180 and 180 degrees.
+void unwind_longitudes(Georeference& geo, int width, int height) {
+  if (geo.srs.IsGeographic() == 0) return;
+  const Extent extent = extent_of(geo.transform, width, height);
+  const double turn = 2.0 * std::numbers::pi / geo.srs.GetAngularUnits();
+  geo.transform[0] -= std::round(0.5 * (extent.min_x + extent.max_x) / turn) * turn;
+}
+
 Result<ElevationRaster> read_elevation_here(const std::string& source_name, const ElevationRequest& request) {
   const Messages messages;
   const NetworkGuard guard(source_name);
@@ -401,6 +409,7 @@ Result<ElevationRaster> read_elevation_here(const std::string& source_name, cons
   Georeference geo = std::move(placed).value();
   Result<void> somewhere = check_extent(source_name, geo, file->GetRasterXSize(), file->GetRasterYSize());
   if (!somewhere.ok()) return std::move(somewhere).error();
+  unwind_longitudes(geo, file->GetRasterXSize(), file->GetRasterYSize());
   const Dataset declared = declare_no_data(*file, notes);
   if (declared) file = declared.get();
   geo.height_unit_m = height_unit_m(*opened.value(), *file, notes);

@@ -67,15 +67,46 @@ std::string unit_of_projection_file(GDALDataset& file) {
   return {};
 }
 
+// The vertical axis of a coordinate system: that of a compound one, or the third of a three-dimensional one.
+struct VerticalAxis {
+  double metres = 0.0;  // per unit; 0 if there is no such axis
+  OGRAxisOrientation orientation = OAO_Up;
+};
+
+VerticalAxis vertical_axis(const OGRSpatialReference* srs) {
+  VerticalAxis axis;
+  if (srs == nullptr || srs->IsGeocentric() != 0) return axis;
+  if (srs->IsCompound() != 0) {
+    if (srs->GetAxis("VERT_CS", 0, &axis.orientation) != nullptr) axis.metres = srs->GetTargetLinearUnits("VERT_CS");
+  } else if (srs->GetAxesCount() == 3) {
+    double metres = 0.0;
+    if (srs->GetAxis(nullptr, 2, &axis.orientation, &metres) != nullptr) axis.metres = metres;
+  }
+  return axis;
+}
+
+// Notes that metres are assumed in a file whose horizontal coordinates have another unit: its heights often have it
+// too.
+void note_horizontal_unit(const OGRSpatialReference* srs, std::vector<std::string>& notes) {
+  const char* name = nullptr;
+  if (srs == nullptr || srs->IsProjected() == 0 || std::abs(srs->GetLinearUnits(&name) - 1.0) < 1e-6) return;
+  notes.push_back(
+      "the unit of the heights is not declared; metres are assumed, although horizontal coordinates have the "
+      "unit '" +
+      files::one_line(name == nullptr ? "" : name, 60) + "'");
+}
+
 // Returns the unit of the heights [m], whatever the direction of their axis is.
 double unsigned_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::string>& notes) {
   std::string name = files::lower_case(read.GetRasterBand(1)->GetUnitType());
   if (name.empty()) {
-    const OGRSpatialReference* const srs = read.GetSpatialRef();
-    const double metres = srs != nullptr && srs->IsCompound() != 0 ? srs->GetTargetLinearUnits("VERT_CS") : 0.0;
+    const double metres = vertical_axis(read.GetSpatialRef()).metres;
     if (metres > 0.0) return metres;
     name = unit_of_projection_file(stored);
-    if (name.empty()) return 1.0;
+    if (name.empty()) {
+      note_horizontal_unit(read.GetSpatialRef(), notes);
+      return 1.0;
+    }
     const double per_metre = std::strtod(name.c_str(), nullptr);
     if (per_metre > 0.0 && std::isfinite(per_metre)) return 1.0 / per_metre;
   }
@@ -89,11 +120,7 @@ double unsigned_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::
 
 double height_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::string>& notes) {
   const double unit_m = unsigned_unit_m(stored, read, notes);
-  const OGRSpatialReference* const srs = stored.GetSpatialRef();
-  OGRAxisOrientation orientation = OAO_Up;
-  if (srs == nullptr || srs->IsCompound() == 0 || srs->GetAxis("VERT_CS", 0, &orientation) == nullptr ||
-      orientation != OAO_Down)
-    return unit_m;
+  if (vertical_axis(stored.GetSpatialRef()).orientation != OAO_Down) return unit_m;
   notes.emplace_back("its vertical axis points down: depths are converted to heights");
   return -unit_m;
 }
