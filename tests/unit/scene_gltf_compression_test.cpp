@@ -74,6 +74,12 @@ TEST_F(SceneGltfCompression, MeshoptCompressionIsRead) {
     EXPECT_EQ(data.bounds.max, glm::dvec3(1, 1, 0));
     for (const MeshVertex& v : data.vertices) EXPECT_EQ(v.normal, glm::vec3(0, 0, 1));
   }
+  // Decoded elements have the stride of the extension, whatever their view says.
+  GltfFile strides = compressed_quad("TRIANGLES");
+  strides.root["bufferViews"][1].erase("byteStride");
+  for (const MeshVertex& v : load(strides).vertices) EXPECT_EQ(v.normal, glm::vec3(0, 0, 1));
+  strides.root["bufferViews"][1]["byteStride"] = 8;
+  refuses_bytes(strides.text(), "byteStride is 8");
   const auto changed = [&](const char* name, const json& value, const std::string& part) {
     GltfFile file = compressed_quad("TRIANGLES");
     file.root["bufferViews"][2]["extensions"]["EXT_meshopt_compression"][name] = value;

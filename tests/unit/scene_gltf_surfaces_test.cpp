@@ -51,6 +51,18 @@ TEST_F(SceneGltfSurfaces, OpaqueMaterialsIgnoreTheAlphaOfTheirTextures) {
   EXPECT_EQ(mip_levels(holes.textures[0])[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 128}));
 }
 
+// The header of a JPEG picture of one pixel with four components, of which only a segment of Adobe tells the colours.
+TEST_F(SceneGltfSurfaces, JpegsOfUndeclaredColoursAreRefused) {
+  const std::string frame("\xFF\xC0\x00\x14\x08\x00\x01\x00\x01\x04\x01\x11\x00\x02\x11\x00\x03\x11\x00\x04\x11\x00",
+                          22);
+  const std::string adobe("\xFF\xEE\x00\x0E"
+                          "Adobe\x00\x64\x00\x00\x00\x00\x02",
+                          16);
+  const std::string scan("\xFF\xDA\x00\x02\xFF\xD9", 6);
+  refuses_bytes(textured("\xFF\xD8" + frame + scan, json::object()).text(), "four components without Adobe's segment");
+  refuses_bytes(textured("\xFF\xD8" + adobe + frame + scan, json::object()).text(), "that is damaged");
+}
+
 // One picture is stored twice only if it has alpha and its materials differ in their use of it.
 TEST_F(SceneGltfSurfaces, PicturesAreStoredOnceForEachUse) {
   for (const unsigned char alpha : {255, 254}) {

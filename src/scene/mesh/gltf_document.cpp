@@ -155,6 +155,12 @@ void parse_views(const GltfJson& root, GltfDocument& out) {
     if (view.stride % 4 != 0) json.refuse("byteStride", "expected a multiple of 4 from 4 to 252");
     if (const auto meshopt = json.extension("EXT_meshopt_compression"); kHasMeshopt && meshopt) {
       view.meshopt = parse_meshopt(*meshopt, out, view.length);
+      // The decoder writes elements with the stride of the extension.
+      if (view.stride != 0 && view.stride != view.meshopt->stride) {
+        json.refuse("byteStride",
+                    "expected " + std::to_string(view.meshopt->stride) + ", as in EXT_meshopt_compression");
+      }
+      if (view.meshopt->mode == GltfMeshopt::Mode::attributes) view.stride = view.meshopt->stride;
     }
     out.views.push_back(std::move(view));
   }

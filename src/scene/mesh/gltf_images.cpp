@@ -103,14 +103,21 @@ std::optional<std::string> fault_of_png(std::string_view bytes, std::uint64_t wi
 std::optional<std::string> fault_of_jpeg(std::string_view bytes, std::uint64_t width, std::uint64_t height) {
   // Up to the first scan, segments consist of a marker and a length. The end marker cannot occur inside a scan.
   std::size_t i = 2;
+  bool four = false, adobe = false;
   while (i + 4 <= bytes.size() && bytes.substr(i, 2) != "\xFF\xDA") {
-    if (bytes[i + 1] == '\xFF') {
+    const auto marker = static_cast<std::uint8_t>(bytes[i + 1]);
+    if (marker == 0xFF) {
       ++i;  // padding
     } else {
+      // A frame has its number of components in the tenth byte.
+      const bool frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+      four = four || (frame && i + 9 < bytes.size() && bytes[i + 9] == 4);
+      adobe = adobe || (marker == 0xEE && bytes.substr(i + 4, 5) == "Adobe");
       i += 2 + (std::size_t{static_cast<std::uint8_t>(bytes[i + 2])} << 8U | static_cast<std::uint8_t>(bytes[i + 3]));
     }
   }
   const bool ended = i < bytes.size() && bytes.find("\xFF\xD9", i) != std::string_view::npos;
+  if (four && !adobe) return "of four components without Adobe's segment, which tells their colours";
   if (!ended || width * height / 64 / 8 > bytes.size()) return "which ends early";
   return {};
 }

@@ -121,6 +121,7 @@ void parse_nodes(const GltfJson& root, GltfDocument& out, std::set<std::string>&
   const int index = root.index("scene", "scenes");
   if (!scenes.empty()) {
     out.roots = scenes[index < 0 ? 0 : static_cast<std::size_t>(index)].indices("nodes", "nodes");
+    if (index < 0 && scenes.size() > 1) undrawn.insert("scenes after the first (the file names no default scene)");
   } else {
     // Without a scene, the roots are all nodes that are not children of others.
     std::vector<bool> child(out.nodes.size(), false);
