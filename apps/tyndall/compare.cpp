@@ -127,13 +127,13 @@ int run_compare(Args args) {
   if (a.value().kind != b.value().kind) {
     return fail("tyndall compare: A and B are of different kinds; expected two PNG or two EXR files", kUnreadable);
   }
+  for (const auto& [path, file] : {std::pair(path_a, &a.value()), std::pair(path_b, &b.value())}) {
+    if (!file->note.empty()) note(concat({"'", files::one_line(path, 200), "': ", file->note}));
+  }
   if (a.value().image.width != b.value().image.width || a.value().image.height != b.value().image.height) {
     return fail(concat({"tyndall compare: A is ", size_text(a.value().image), " and B is ", size_text(b.value().image),
                         "; expected equal sizes"}),
                 kSizesDiffer);
-  }
-  for (const auto& [path, file] : {std::pair(path_a, &a.value()), std::pair(path_b, &b.value())}) {
-    if (!file->note.empty()) note(concat({"'", files::one_line(path, 200), "': ", file->note}));
   }
   const image::Metrics metrics = image::compare(a.value().image, b.value().image);
   if (!difference_path.empty()) {

@@ -196,13 +196,27 @@ void read_rows(Imf::InputFile& input, const Imath::Box2i& window, bool grey, Ima
 void read_luminance_chroma(std::string_view bytes, const std::string& path, const Imath::Box2i& window, Image& image) {
   BytesIn stream(bytes, path);
   Imf::RgbaInputFile input(stream);
+  for (const char* name : {"RY", "BY"}) {
+    const Imf::Channel* const chroma = input.header().channels().findChannel(name);
+    if (chroma != nullptr && (chroma->xSampling != 2 || chroma->ySampling != 2)) {
+      throw std::runtime_error("its chroma is not stored for every second pixel and row, as OpenEXR reads it");
+    }
+  }
+  const Imf::Channel* const luminance = input.header().channels().findChannel("Y");
+  const bool whole = luminance != nullptr && luminance->type != Imf::HALF;
   const std::size_t width = image.width;
   std::vector<Imf::Rgba> row(width);
   for (int y = window.min.y; y <= window.max.y; ++y) {
     input.setFrameBuffer(
         row.data() - window.min.x - static_cast<std::ptrdiff_t>(y) * static_cast<std::ptrdiff_t>(width), 1, width);
     input.readPixels(y);
-    for (const Imf::Rgba& pixel : row) image.rgb.insert(image.rgb.end(), {pixel.r, pixel.g, pixel.b});
+    for (const Imf::Rgba& pixel : row) {
+      image.rgb.insert(image.rgb.end(), {pixel.r, pixel.g, pixel.b});
+      if (whole && !(pixel.r.isFinite() && pixel.g.isFinite() && pixel.b.isFinite())) {
+        throw std::runtime_error(
+            "its luminance exceeds half precision, to which OpenEXR converts it, or is not finite");
+      }
+    }
   }
 }
 

@@ -205,6 +205,8 @@ std::string exr_header_problem(std::string_view bytes) {
   const std::optional<std::uint32_t> version = reader.word();
   if (!version) return kCutOff;
   constexpr std::uint32_t kMultiPart = 0x1000;
+  constexpr std::uint32_t kDeep = 0x800;
+  if ((*version & kDeep) != 0) return "it contains deep pixels";
   const bool many = (*version & kMultiPart) != 0;
   std::int64_t pieces = 0;
   Layout last;

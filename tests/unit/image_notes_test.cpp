@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
@@ -74,6 +75,26 @@ class ImageNotes : public testing::Test {
     return note(path);
   }
 
+  // Writes an EXR of 4 x 4 pixels with luminance and chroma, and returns the error of its reader.
+  std::string error_of_chroma(float luminance, int sampling) {
+    Imf::Header header(4, 4);
+    std::vector<float> values(16, luminance), chroma(16, 0.0F);
+    Imf::FrameBuffer buffer;
+    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 16));
+    for (const char* name : {"RY", "BY"}) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT, sampling, sampling));
+      buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(chroma.data()), 4, 16, sampling, sampling));
+    }
+    {
+      Imf::OutputFile file(at("yc.exr").c_str(), header);
+      file.setFrameBuffer(buffer);
+      file.writePixels(4);
+    }
+    const Result<File> file = read(at("yc.exr"));
+    return file.ok() ? "" : file.error().message;
+  }
+
   [[nodiscard]] std::string at(const char* name) const { return (folder_ / name).string(); }
 
   std::vector<png_byte> code_points_;  // of the chunk cICP; empty: without this chunk
@@ -94,6 +115,16 @@ TEST_F(ImageNotes, TransparencyAndGammaOfPng) {
   EXPECT_EQ(note_of_png(PNG_COLOR_TYPE_RGB_ALPHA, 0.0), "its transparency is ignored");
   EXPECT_EQ(note_of_png(PNG_COLOR_TYPE_RGB_ALPHA, 1.0),
             "its transparency is ignored; its gamma is ignored, and the sRGB curve is assumed");
+}
+
+TEST_F(ImageNotes, ExrFilesThatCannotBeReadAreNamed) {
+  EXPECT_EQ(error_of_chroma(0.5F, 2), "");
+  EXPECT_NE(error_of_chroma(0.5F, 1).find("its chroma is not stored for every second pixel"), std::string::npos);
+  EXPECT_NE(error_of_chroma(1e5F, 2).find("its luminance exceeds half precision"), std::string::npos);
+  std::ofstream(at("deep.exr"), std::ios::binary) << std::string("\x76\x2F\x31\x01\x02\x08\x00\x00", 8);
+  const Result<File> deep = read(at("deep.exr"));
+  ASSERT_FALSE(deep.ok());
+  EXPECT_NE(deep.error().message.find("it contains deep pixels; expected"), std::string::npos) << deep.error().message;
 }
 
 TEST_F(ImageNotes, PrimariesOfPng) {
