@@ -7,6 +7,7 @@
 #include "effect/medium.hpp"
 #include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
+#include "models/accuracy_notes.hpp"
 #include "models/spectral.hpp"
 #include "models/table_axes.hpp"
 #include "models/table_values.hpp"
@@ -307,7 +308,14 @@ std::vector<double> Model::wavelengths_nm() const {
 }
 
 std::vector<std::string> Model::notes() const {
-  return precomputed_ != nullptr ? precomputed_->origin().notes : cpu_.notes;
+  std::vector<std::string> out = precomputed_ != nullptr ? precomputed_->origin().notes : cpu_.notes;
+  // The CPU models say by themselves what they leave out.
+  if (precomputed_ != nullptr || single_ != nullptr) {
+    for (std::string& note : models::accuracy_notes(settings_.effect, precomputed_ != nullptr)) {
+      out.push_back(std::move(note));
+    }
+  }
+  return out;
 }
 
 std::string Model::device() const { return host_ != nullptr ? host_->device_name() : "CPU, double precision"; }

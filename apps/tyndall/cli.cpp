@@ -10,12 +10,12 @@
 #include "arguments.hpp"
 #include "config/phase_file.hpp"
 #include "config/scene_file.hpp"
-#include "effect/medium.hpp"
 #include "files/access.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
 #include "image/image.hpp"
 #include "input_files.hpp"
+#include "models/accuracy_notes.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -114,32 +114,57 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
 
 namespace {
 
-// Notes that the tables have too few orders of scattering for a thick atmosphere (docs/air.md).
-void note_thick_atmosphere(const config::Settings& settings) {
-  constexpr double kThick = 2.0;
-  const Params& params = settings.effect;
-  if (settings.scene.scattering.model != scene::ScatteringModel::atmosphere ||
-      params.scattering.medium != MediumKind::atmosphere || params.scattering.multiple == MultipleScattering::none)
-    return;
-  const shared::Medium air = medium_from_params(params);
-  double thickest = 0.0;
-  const auto add = [&](float rayleigh, float mie) {
-    thickest = std::max(thickest, static_cast<double>(rayleigh) * static_cast<double>(air.rayleigh_scale_height_m) +
-                                      static_cast<double>(mie) * static_cast<double>(air.mie_scale_height_m));
-  };
-  add(air.rayleigh_scattering.x, air.mie_scattering.x);
-  add(air.rayleigh_scattering.y, air.mie_scattering.y);
-  add(air.rayleigh_scattering.z, air.mie_scattering.z);
-  if (thickest <= kThick) return;
-  note(concat(
-      {"the atmosphere scatters with a vertical optical depth of ",
-       files::number_text(std::round(10.0 * thickest) / 10.0),
-       "; the tables hold only tables.orders orders of scattering, so results from them are too dark (docs/air.md)"}));
+// Prints notes for a verb that computes a model and draws no picture: parameters without effect that --set assigns, and
+// a scene that chooses another model.
+void note_without_effect(const CommonOptions& options, const scene::ModelInfo& model) {
+  // Groups end in a full stop.
+  constexpr std::string_view kOfPictures[] = {"camera.",
+                                              "terrain.",
+                                              "meshes.",
+                                              "shadows.",
+                                              "epipolar.",
+                                              "froxels.",
+                                              "tonemap.",
+                                              "sun.elevation_deg",
+                                              "sun.azimuth_deg",
+                                              "scattering.enabled",
+                                              "scattering.only",
+                                              "scattering.technique",
+                                              "scattering.multiple",
+                                              "scattering.light_shafts",
+                                              "scattering.downscale",
+                                              "scattering.sections",
+                                              "scattering.extinction"};
+  std::string list;
+  int count = 0;
+  for (const std::string& assignment : options.sets) {
+    const std::string_view key = std::string_view(assignment).substr(0, assignment.find('='));
+    const bool listed = std::any_of(std::begin(kOfPictures), std::end(kOfPictures), [&](std::string_view name) {
+      return name.ends_with('.') ? key.starts_with(name) : key == name;
+    });
+    if (listed) list += concat({count++ > 0 ? ", " : "", key});
+  }
+  if (count > 0) note(concat({list, count > 1 ? " have" : " has", " no effect here, where no picture is drawn"}));
+  const scene::ModelInfo& drawn = scene::drawn_model(options.settings.effect, options.settings.scene);
+  if (drawn.id == model.id || drawn.id == scene::ModelId::precomputed) return;
+  const bool medium = drawn.id == scene::ModelId::homogeneous_medium;
+  note(concat({medium ? "scattering.medium = homogeneous" : "scattering.model = ", medium ? "" : drawn.name,
+               " has no effect here; --model ", drawn.name, " computes this model"}));
+}
+
+// Prints notes on the accuracy of a model, or, if it is null, of the one that draws the scene.
+void note_accuracy(const config::Settings& settings, const scene::ModelInfo* model) {
+  using scene::ModelId;
+  const ModelId id = (model != nullptr ? *model : scene::drawn_model(settings.effect, settings.scene)).id;
+  if (id == ModelId::homogeneous || id == ModelId::homogeneous_medium || id == ModelId::reference) return;
+  const bool tables = id == ModelId::precomputed &&
+                      (model != nullptr || settings.effect.scattering.multiple != MultipleScattering::none);
+  for (const std::string& text : models::accuracy_notes(settings.effect, tables)) note(text);
 }
 
 }  // namespace
 
-Result<void> resolve(CommonOptions& options) {
+Result<void> resolve(CommonOptions& options, const scene::ModelInfo* model) {
   options.settings = config::Settings();
   if (options.allow_outside) files::allow_outside();
   if (!options.scene_file.empty()) {
@@ -160,7 +185,8 @@ Result<void> resolve(CommonOptions& options) {
                    files::number_text(std::round(1000.0 * phase->deviation()) / 10.0), " % and has been corrected"}));
     }
   }
-  note_thick_atmosphere(options.settings);
+  if (model != nullptr) note_without_effect(options, *model);
+  note_accuracy(options.settings, model);
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/settings.hpp"
+#include "scene/description/model_registry.hpp"
 #include "tyndall/result.hpp"
 
 namespace tyndall::cli {
@@ -82,8 +83,10 @@ struct CommonOptions {
 void add_common(Arguments& arguments, CommonOptions& options, unsigned which);
 
 // Computes the settings after parsing: the defaults, then the scene file, then every --set; checked together. All
-// errors count as bad input, including unreadable scene files.
-[[nodiscard]] Result<void> resolve(CommonOptions& options);
+// errors count as bad input, including unreadable scene files. Prints notes on the atmosphere for the model that draws
+// the scene, or for `model`, which a verb computes instead of drawing. With a model, it also prints which assignments
+// of --set have no effect.
+[[nodiscard]] Result<void> resolve(CommonOptions& options, const scene::ModelInfo* model = nullptr);
 
 // Returns the file name of a frame of a sequence: the "%d" or "%04d" (any width up to %09d) in `pattern` becomes the
 // number. A pattern without one is returned as it is.

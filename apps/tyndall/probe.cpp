@@ -142,7 +142,7 @@ int run_probe(Args args) {
   const std::span<const scene::ModelInfo> models = scene::model_registry();
   const scene::ModelInfo& model = *std::find_if(
       models.begin(), models.end(), [&](const scene::ModelInfo& info) { return info.name == given.model_name; });
-  if (Result<void> r = resolve(options); !r) return fail(r.error());
+  if (Result<void> r = resolve(options, &model); !r) return fail(r.error());
   Result<ProbeTable> table = read_queries(given.queries);
   if (!table) return fail(table.error());
   for (std::size_t row = 0; row < table.value().queries.size(); ++row) {

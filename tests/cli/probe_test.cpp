@@ -165,13 +165,56 @@ TEST_F(CliProbe, ParametersAndScenesApply) {
 
 TEST_F(CliProbe, ThickAtmospheresAreNoted) {
   const std::string path = scratch_.write("queries.csv", kHeader + "0,30,60,0\n");
-  const auto notes = [&](const std::string& visibility_m) {
-    return run_tyndall({"probe", "--queries", path, "--model", "single", "--set",
-                        "atmosphere.single_scattering_albedo=1", "--set", "atmosphere.visibility_m=" + visibility_m})
+  const auto notes = [&](const std::string& visibility_m, const std::string& model, const std::string& more) {
+    return run_tyndall({"probe", "--queries", path, "--model", model, "--set", "atmosphere.single_scattering_albedo=1",
+                        "--set", "atmosphere.visibility_m=" + visibility_m, "--set", more, "--set",
+                        "tables.size=8,16,8,8"})
         .err;
   };
-  EXPECT_EQ(notes("5000"), "");
-  EXPECT_NE(notes("1000").find("vertical optical depth of 4.9"), std::string::npos) << notes("1000");
+  const std::string other = "planet.ground_albedo=0.1";
+  EXPECT_EQ(notes("5000", "precomputed", other), "");
+  EXPECT_NE(notes("1000", "precomputed", other).find("vertical optical depth of 4.9"), std::string::npos);
+  EXPECT_NE(notes("1000", "precomputed", "scattering.multiple=none").find("vertical optical depth of 4.9"),
+            std::string::npos);
+  EXPECT_EQ(notes("1000", "single", other), "");  // reads no tables
+  // The aerosol of an atmosphere whose top is far below its scale height.
+  EXPECT_EQ(run_tyndall({"probe", "--queries", path, "--model", "single", "--set", "atmosphere.height_m=1000", "--set",
+                         "atmosphere.mie_scale_height_m=100000", "--set", "atmosphere.aerosol_optical_depth=0.01"})
+                .err,
+            "");
+}
+
+TEST_F(CliProbe, HighAtmospheresAreNoted) {
+  const std::string path = scratch_.write("queries.csv", kHeader + "0,30,60,0\n");
+  const ProcessResult small =
+      run_tyndall({"probe", "--queries", path, "--model", "single", "--set", "planet.radius_m=10000"});
+  EXPECT_EQ(small.status, 0);
+  EXPECT_NE(small.err.find("is more than 0.16 of planet.radius_m"), std::string::npos) << small.err;
+}
+
+// What --set assigns without effect is noted, and a scene that chooses another model.
+TEST_F(CliProbe, AssignmentsWithoutEffectAreNoted) {
+  const std::string path = scratch_.write("queries.csv", kHeader + "0,30,60,0\n");
+  const auto note = [&](const std::string& assignment) {
+    return run_tyndall({"probe", "--queries", path, "--model", "single", "--set", assignment}).err;
+  };
+  EXPECT_NE(note("sun.elevation_deg=70").find("sun.elevation_deg has no effect here"), std::string::npos);
+  EXPECT_NE(note("camera.altitude_m=900").find("camera.altitude_m has no effect here"), std::string::npos);
+  EXPECT_NE(note("scattering.medium=homogeneous").find("--model homogeneous-medium computes this model"),
+            std::string::npos);
+  EXPECT_NE(note("scattering.model=oneil").find("scattering.model = oneil has no effect here; --model oneil"),
+            std::string::npos);
+  EXPECT_EQ(note("atmosphere.aerosol_density=2"), "");
+}
+
+// An eye exactly at sea level looks at the ground below it from a distance of 0.
+TEST_F(CliProbe, AnEyeOnTheGroundSeesIt) {
+  const std::string queries = kHeader + "0,100,40,0\n0.001,100,40,0\n0,180,40,0\n";
+  const files::CsvTable seen =
+      probe(queries, {"--model", "precomputed", "--set", "planet.ground_albedo=0.5", "--set", "tables.size=8,32,16,8"});
+  EXPECT_GT(number(seen, 1, "L_g"), 0.1);
+  EXPECT_NEAR(number(seen, 0, "L_g"), number(seen, 1, "L_g"), 1e-4);
+  EXPECT_NEAR(number(seen, 2, "L_g"), number(seen, 1, "L_g"), 1e-4);
 }
 
 TEST_F(CliProbe, WritesAFileOrJson) {
@@ -254,7 +297,8 @@ TEST_F(CliProbe, EyesFarBelowSeaLevel) {
   }
   const std::string path = scratch_.write("deep.csv", kHeader + "0,0,0,0\n-2000,0,0,0\n");
   const ProcessResult process =
-      run_tyndall({"probe", "--queries", path, "--model", "single", "--set", "planet.radius_m=4000"});
+      run_tyndall({"probe", "--queries", path, "--model", "single", "--set", "planet.radius_m=4000", "--set",
+                   "atmosphere.rayleigh_scale_height_m=500", "--set", "atmosphere.mie_scale_height_m=500"});
   EXPECT_EQ(process.status, 2);
   EXPECT_EQ(process.err,
             "tyndall: error: " + path +

@@ -67,6 +67,21 @@ TEST(UnusedParams, OfWhatIsNotDrawnAreNamed) {
   EXPECT_EQ(unused({"moon.elevation_deg=30", "moon.light=true"}), Lines());
   EXPECT_EQ(unused({"sun.animate_speed_deg=5"}),
             Lines({"sun.animate_speed_deg has no effect with sun.animate = false"}));
+  EXPECT_EQ(unused({"scattering.enabled=false", "scattering.multiple=occluded", "epipolar.slices=64"}),
+            Lines({"scattering.multiple, epipolar.slices have no effect with scattering.enabled = false"}));
+  EXPECT_EQ(unused({"scattering.light_shafts=false", "epipolar.min_max_tree=false"}),
+            Lines({"epipolar.min_max_tree has no effect with scattering.light_shafts = false"}));
+  EXPECT_EQ(unused({"epipolar.min_max_tree=false", "epipolar.min_max_format=float32"}),
+            Lines({"epipolar.min_max_format has no effect with epipolar.min_max_tree = false"}));
+  EXPECT_EQ(unused({"scattering.single=integration", "scattering.sections=each"}),
+            Lines({"scattering.sections has no effect with scattering.single = integration"}));
+  EXPECT_EQ(unused({"scattering.single=integration", "scattering.sections=each", "scattering.multiple=occluded"}),
+            Lines());
+  EXPECT_EQ(unused({"scattering.medium=homogeneous", "scattering.single=integration"}),
+            Lines({"scattering.single has no effect with scattering.medium = homogeneous"}));
+  EXPECT_EQ(unused({"scattering.medium=homogeneous", "scattering.single=none"}), Lines());
+  EXPECT_EQ(unused({"scattering.model=oneil", "tables.orders=5", "atmosphere.ozone_du=100"}),
+            Lines({"atmosphere.ozone_du, tables.orders have no effect with scattering.model = oneil"}));
   EXPECT_EQ(unused({"terrain.units=degrees"}), Lines({"terrain.units has no effect with terrain.source = procedural"}));
   EXPECT_EQ(unused({"terrain.units=degrees", "terrain.seed=2", "terrain.source=none"}),
             Lines({"terrain.seed, terrain.units have no effect with terrain.source = none"}));

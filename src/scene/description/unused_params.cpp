@@ -73,6 +73,29 @@ void check_terrain_and_meshes(const SceneParams& scene, const Check& check) {
         "meshes.source = none");
 }
 
+// Reports parameters of scattering by the effect that others switch off.
+template <typename Check>
+void check_scattering(const Params& params, bool by_effect, bool homogeneous, const Check& check) {
+  const ScatteringParams& scattering = params.scattering;
+  const bool on = scattering.enabled.value != 0;
+  check(!on,
+        {"scattering.medium", "scattering.single", "scattering.multiple", "scattering.sections",
+         "scattering.extinction", "scattering.downscale", "scattering.light_shafts", "scattering.only", "epipolar."},
+        "scattering.enabled = false");
+  if (!by_effect || !on) return;
+  const bool epipolar = scattering.technique == Technique::epipolar;
+  check(scattering.light_shafts.value == 0,
+        {"shadows.cascade_processing", "epipolar.min_max_tree", "epipolar.min_max_format"},
+        "scattering.light_shafts = false");
+  check(epipolar && scattering.light_shafts.value != 0 && params.epipolar.min_max_tree.value == 0,
+        {"epipolar.min_max_format"}, "epipolar.min_max_tree = false");
+  check(homogeneous && scattering.single != SingleScattering::none, {"scattering.single"},
+        "scattering.medium = homogeneous");
+  check(!homogeneous && scattering.single == SingleScattering::integration &&
+            scattering.multiple != MultipleScattering::occluded,
+        {"scattering.sections"}, "scattering.single = integration");
+}
+
 // Reports parameters of an exposure that is given in another way.
 template <typename Check>
 void check_exposure(const TonemapParams& tonemap, const Check& check) {
@@ -114,7 +137,8 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
   check(
       !by_effect,
       {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single", "scattering.multiple",
-       "scattering.sections", "scattering.extinction", "homogeneous_medium.", "epipolar.", "froxels."},
+       "scattering.sections", "scattering.extinction", "scattering.light_shafts", "scattering.integration_steps",
+       "shadows.cascade_processing", "tables.", "atmosphere.ozone_du", "homogeneous_medium.", "epipolar.", "froxels."},
       "scattering.model = " + std::string(drawn_model(params, scene).name));
   check(by_effect, {"scattering.evaluate", "oneil.", "homogeneous."}, "scattering.model = atmosphere");
   check(model == Model::homogeneous, {"oneil."}, "scattering.model = homogeneous");
@@ -131,6 +155,7 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
         {"scattering.downscale", "scattering.extinction", "epipolar."}, "scattering.technique = brute-force");
   check(by_effect && params.scattering.technique == Technique::froxels,
         {"scattering.downscale", "scattering.extinction", "epipolar."}, "scattering.technique = froxels");
+  check_scattering(params, by_effect, homogeneous, check);
   check(by_effect && params.froxels.enabled.value == 0 && params.scattering.technique != Technique::froxels,
         {"froxels."}, "froxels.enabled = false");
 
