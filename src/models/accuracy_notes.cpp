@@ -38,14 +38,13 @@ std::vector<std::string> accuracy_notes(const Params& params, bool from_tables) 
   std::vector<std::string> out;
   const double depth = from_tables ? scattering_depth(params) : 0.0;
   if (depth > kThick) {
-    out.push_back("the atmosphere scatters with a vertical optical depth of " +
-                  rounded(depth, 1) +
+    out.push_back("the atmosphere scatters with a vertical optical depth of " + rounded(depth, 1) +
                   "; the tables hold only tables.orders orders of scattering, so results from them are too dark "
                   "(docs/air.md)");
   }
   const double radius_m = static_cast<double>(params.planet.radius_m);
-  const double scale_m = static_cast<double>(
-      std::max(params.atmosphere.rayleigh_scale_height_m, params.atmosphere.mie_scale_height_m));
+  const double scale_m =
+      static_cast<double>(std::max(params.atmosphere.rayleigh_scale_height_m, params.atmosphere.mie_scale_height_m));
   if (scale_m > kHigh * radius_m) {
     out.push_back("a scale height of " + rounded(scale_m, 0) + " m is more than 0.16 of planet.radius_m; " +
                   "optical depths are too large (docs/air.md)");

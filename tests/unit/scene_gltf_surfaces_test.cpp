@@ -51,7 +51,7 @@ TEST_F(SceneGltfSurfaces, OpaqueMaterialsIgnoreTheAlphaOfTheirTextures) {
   EXPECT_EQ(mip_levels(holes.textures[0])[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 128}));
 }
 
-// The header of a JPEG picture of one pixel with four components, of which only a segment of Adobe tells the colours.
+// The header of a JPEG picture of one pixel with four components, whose colours only a segment of Adobe defines.
 TEST_F(SceneGltfSurfaces, JpegsOfUndeclaredColoursAreRefused) {
   const std::string frame("\xFF\xC0\x00\x14\x08\x00\x01\x00\x01\x04\x01\x11\x00\x02\x11\x00\x03\x11\x00\x04\x11\x00",
                           22);

@@ -117,7 +117,7 @@ std::optional<std::string> fault_of_jpeg(std::string_view bytes, std::uint64_t w
     }
   }
   const bool ended = i < bytes.size() && bytes.find("\xFF\xD9", i) != std::string_view::npos;
-  if (four && !adobe) return "of four components without Adobe's segment, which tells their colours";
+  if (four && !adobe) return "of four components without Adobe's segment, which defines their colours";
   if (!ended || width * height / 64 / 8 > bytes.size()) return "which ends early";
   return {};
 }
