@@ -290,7 +290,7 @@ TEST_F(CliScenes, ExposureValuesAreThoseOfThePicture) {
                                             "--size",
                                             "16x9",
                                             "--set",
-                                            "planet.radius_m=20000",
+                                            "planet.radius_m=60000",
                                             "--set",
                                             "tables.size=4,4,4,4",
                                             "--set",
