@@ -68,7 +68,8 @@ std::array<double, 3> homogeneous_sun(const shared::Homogeneous& medium, double 
   const glsl64::Homogeneous m = widen(medium);
   if (altitude_m <= m.atmosphere_height_m) {
     const glsl64::vec3 at_ground = glsl64::homogeneous_sun(m, cos_sun_zenith);
-    if (m.falloff == 0U || at_ground == glsl64::vec3(0.0)) return glsl64::to_array(at_ground);
+    // At the ground, falloff changes nothing, and a part of the sun's disc may be visible below the horizontal.
+    if (m.falloff == 0U || altitude_m <= 0.0 || cos_sun_zenith < 0.0) return glsl64::to_array(at_ground);
   } else if (glsl64::sun_visibility(altitude_m, cos_sun_zenith, m.planet_radius_m) == 0.0) {
     return {};
   }

@@ -277,6 +277,16 @@ TEST(Homogeneous, IrradianceAndSunlightFollowTheAltitude) {
               models::homogeneous_sky_irradiance(constant, 0.0, cos_sun));
     EXPECT_EQ(models::homogeneous_sun(constant, altitude, cos_sun), models::homogeneous_sun(constant, 0.0, cos_sun));
   }
+  // At the ground, a disc that has partly set shines as it does without falloff.
+  shared::Homogeneous constant_disc = constant, falling_disc = falling;
+  constant_disc.sun_radius_rad = falling_disc.sun_radius_rad = 0.01F;
+  for (const double up : {-0.02, -0.005, -0.001, 0.0, 0.001, 0.005}) {
+    const Rgb expected = models::homogeneous_sun(constant_disc, 0.0, up),
+              found = models::homogeneous_sun(falling_disc, 0.0, up);
+    EXPECT_EQ(found, expected) << up;
+    EXPECT_LE(found[0], 0.3) << up;
+    EXPECT_EQ(found[0] > 0.0, up > -0.01) << up;
+  }
   EXPECT_LT(last, 0.01 * models::homogeneous_sky_irradiance(falling, 0.0, cos_sun)[1]);
   for (const shared::Homogeneous& medium : {constant, falling}) {
     EXPECT_EQ(models::homogeneous_sky_irradiance(medium, 1e7, cos_sun), Rgb{});
