@@ -37,10 +37,11 @@ py::array_t<double> column(const std::vector<double>& values) {
 }
 
 const scene::ModelInfo& model_named(const std::string& name) {
+  const scene::ModelInfo* const found = scene::find_model(name);
+  if (found != nullptr && found->id != scene::ModelId::reference) return *found;
   std::string expected;
   for (const scene::ModelInfo& info : scene::model_registry()) {
     if (info.id == scene::ModelId::reference) continue;
-    if (info.name == name) return info;
     expected += (expected.empty() ? "" : ", ") + std::string(info.name);
   }
   throw py::value_error("model: unknown model '" + name + "'; expected one of " + expected);

@@ -16,6 +16,7 @@
 #include "image/image.hpp"
 #include "input_files.hpp"
 #include "models/accuracy_notes.hpp"
+#include "scene/description/unused_params.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -125,6 +126,8 @@ void note_without_effect(const CommonOptions& options, const scene::ModelInfo& m
                                               "epipolar.",
                                               "froxels.",
                                               "tonemap.",
+                                              "moon.",
+                                              "night.",
                                               "sun.elevation_deg",
                                               "sun.azimuth_deg",
                                               "scattering.enabled",
@@ -135,16 +138,12 @@ void note_without_effect(const CommonOptions& options, const scene::ModelInfo& m
                                               "scattering.downscale",
                                               "scattering.sections",
                                               "scattering.extinction"};
-  std::string list;
-  int count = 0;
+  std::vector<std::string> keys;
   for (const std::string& assignment : options.sets) {
-    const std::string_view key = std::string_view(assignment).substr(0, assignment.find('='));
-    const bool listed = std::any_of(std::begin(kOfPictures), std::end(kOfPictures), [&](std::string_view name) {
-      return name.ends_with('.') ? key.starts_with(name) : key == name;
-    });
-    if (listed) list += concat({count++ > 0 ? ", " : "", key});
+    keys.emplace_back(files::trimmed(std::string_view(assignment).substr(0, assignment.find('='))));
   }
-  if (count > 0) note(concat({list, count > 1 ? " have" : " has", " no effect here, where no picture is drawn"}));
+  const std::string found = scene::without_effect(keys, kOfPictures);
+  if (!found.empty()) note(concat({found, " here, where no picture is drawn"}));
   const scene::ModelInfo& drawn = scene::drawn_model(options.settings.effect, options.settings.scene);
   if (drawn.id == model.id || drawn.id == scene::ModelId::precomputed) return;
   const bool medium = drawn.id == scene::ModelId::homogeneous_medium;
@@ -156,7 +155,7 @@ void note_without_effect(const CommonOptions& options, const scene::ModelInfo& m
 void note_accuracy(const config::Settings& settings, const scene::ModelInfo* model) {
   using scene::ModelId;
   const ModelId id = (model != nullptr ? *model : scene::drawn_model(settings.effect, settings.scene)).id;
-  if (id == ModelId::homogeneous || id == ModelId::homogeneous_medium || id == ModelId::reference) return;
+  if (id != ModelId::precomputed && id != ModelId::single) return;
   const bool tables = id == ModelId::precomputed &&
                       (model != nullptr || settings.effect.scattering.multiple != MultipleScattering::none);
   for (const std::string& text : models::accuracy_notes(settings.effect, tables)) note(text);

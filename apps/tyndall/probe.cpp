@@ -139,9 +139,7 @@ int run_probe(Args args) {
   if (given.queries.empty()) {
     return fail(files::input_error("missing queries", "tyndall probe", "expected --queries FILE"));
   }
-  const std::span<const scene::ModelInfo> models = scene::model_registry();
-  const scene::ModelInfo& model = *std::find_if(
-      models.begin(), models.end(), [&](const scene::ModelInfo& info) { return info.name == given.model_name; });
+  const scene::ModelInfo& model = *scene::find_model(given.model_name);  // the option accepts only names of models
   if (Result<void> r = resolve(options, &model); !r) return fail(r.error());
   Result<ProbeTable> table = read_queries(given.queries);
   if (!table) return fail(table.error());

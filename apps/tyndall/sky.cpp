@@ -374,10 +374,7 @@ int run_sky(Args args) {
   if (const std::optional<int> status = parse_sky(args, options, sky)) return *status;
   const Result<std::vector<SkyEntry>> skies = find_skies(sky);
   if (!skies) return fail(skies.error());
-  const std::span<const scene::ModelInfo> models = scene::model_registry();
-  const scene::ModelInfo& model =
-      *std::find_if(models.begin(), models.end(), [&](const scene::ModelInfo& info) { return info.name == sky.model; });
-  if (Result<void> r = resolve(options, &model); !r) return fail(r.error());
+  if (Result<void> r = resolve(options, scene::find_model(sky.model)); !r) return fail(r.error());
   const Result<Projection> projection = check_map(sky, options.size);
   if (!projection) return fail(projection.error());
   Result<Batch> batch = begin_sky(options, sky, skies.value());

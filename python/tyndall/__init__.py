@@ -102,7 +102,7 @@ class Atmosphere:
 
     @property
     def notes(self):
-        """Remarks, for example that tables could not be stored."""
+        """Remarks, for example that tables could not be stored, or that an atmosphere is too thick for them."""
         return list(dict.fromkeys(note for model in self._models for note in model.notes))
 
     def _rows(self, altitude, zenith, sun_zenith, azimuth):

@@ -27,6 +27,25 @@ TEST(CliOptions, Sizes) {
   }
 }
 
+// `sky` draws no picture of the scene either.
+TEST(CliOptions, AssignmentsWithoutEffectOnSkiesAreNoted) {
+  const Scratch scratch;
+  const auto notes = [&](const std::string& assignment) {
+    return run_tyndall({"sky", "-o", scratch.at("sky.exr"), "--size", "4x2", "--model", "single", "--disc", "false",
+                        "--sun-elevation-deg", "30", "--sun-azimuth-deg", "0", "--set", assignment})
+        .err;
+  };
+  EXPECT_EQ(notes("sun.irradiance=2,2,2"), "");
+  EXPECT_EQ(notes("sun.elevation_deg=70"),
+            "tyndall: note: sun.elevation_deg has no effect here, where no picture is drawn\n");
+  EXPECT_EQ(notes(" camera.altitude_m =9000"),
+            "tyndall: note: camera.altitude_m has no effect here, where no picture is drawn\n");
+  EXPECT_EQ(
+      notes("scattering.medium=homogeneous"),
+      "tyndall: note: scattering.medium = homogeneous has no effect here; --model homogeneous-medium computes this "
+      "model\n");
+}
+
 TEST(CliOptions, FramePaths) {
   EXPECT_EQ(frame_path("out.%04d.png", 7), "out.0007.png");
   EXPECT_EQ(frame_path("out.%04d.png", 123456), "out.123456.png");

@@ -33,6 +33,14 @@ def single():
     return tyndall.Atmosphere(model="single")
 
 
+def test_notes_on_atmospheres_beyond_the_methods(small):
+    thick = {**small, "atmosphere.visibility_m": 1000, "atmosphere.single_scattering_albedo": 1}
+    assert any("vertical optical depth of 4.9" in note for note in tyndall.Atmosphere(thick).notes)
+    assert tyndall.Atmosphere(thick, model="single").notes == []
+    high = tyndall.Atmosphere({"planet.radius_m": 10000}, model="single")
+    assert any("is more than 0.16 of planet.radius_m" in note for note in high.notes)
+
+
 def columns():
     altitude, zenith, sun, azimuth = np.array(QUERIES, dtype=float).T
     return {"altitude": altitude, "zenith": zenith, "sun_zenith": sun, "azimuth": azimuth}

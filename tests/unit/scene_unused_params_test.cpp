@@ -69,6 +69,10 @@ TEST(UnusedParams, OfWhatIsNotDrawnAreNamed) {
             Lines({"sun.animate_speed_deg has no effect with sun.animate = false"}));
   EXPECT_EQ(unused({"scattering.enabled=false", "scattering.multiple=occluded", "epipolar.slices=64"}),
             Lines({"scattering.multiple, epipolar.slices have no effect with scattering.enabled = false"}));
+  // The homogeneous model leaves out the ground, with scattering on or off. The folder of the cache also contains
+  // pipelines.
+  EXPECT_EQ(unused({"scattering.model=homogeneous", "scattering.enabled=false", "scattering.only=true"}), Lines());
+  EXPECT_EQ(unused({"scattering.model=oneil", "tables.cache=none"}), Lines());
   EXPECT_EQ(unused({"scattering.light_shafts=false", "epipolar.min_max_tree=false"}),
             Lines({"epipolar.min_max_tree has no effect with scattering.light_shafts = false"}));
   EXPECT_EQ(unused({"epipolar.min_max_tree=false", "epipolar.min_max_format=float32"}),

@@ -43,6 +43,12 @@ std::span<const ModelInfo> model_registry() { return kModels; }
 
 const ModelInfo& model_info(ModelId id) { return kModels[static_cast<std::size_t>(id)]; }
 
+const ModelInfo* find_model(std::string_view name) {
+  const auto* const found =
+      std::find_if(std::begin(kModels), std::end(kModels), [&](const ModelInfo& info) { return info.name == name; });
+  return found == std::end(kModels) ? nullptr : found;
+}
+
 const ModelInfo& drawn_model(const Params& params, const SceneParams& scene) {
   const Drawn model = scene.scattering.model;
   const auto draws = [&](const ModelInfo& info) {

@@ -40,6 +40,8 @@ struct ModelInfo {
 // Returns all models in the order of ModelId.
 [[nodiscard]] std::span<const ModelInfo> model_registry();
 [[nodiscard]] const ModelInfo& model_info(ModelId id);
+// Returns the model with this name, or null.
+[[nodiscard]] const ModelInfo* find_model(std::string_view name);
 // Returns the model that these parameters draw with.
 [[nodiscard]] const ModelInfo& drawn_model(const Params& params, const SceneParams& scene);
 

@@ -76,13 +76,14 @@ void check_terrain_and_meshes(const SceneParams& scene, const Check& check) {
 // Reports parameters of scattering by the effect that others switch off.
 template <typename Check>
 void check_scattering(const Params& params, bool by_effect, bool homogeneous, const Check& check) {
+  if (!by_effect) return;
   const ScatteringParams& scattering = params.scattering;
   const bool on = scattering.enabled.value != 0;
   check(!on,
         {"scattering.medium", "scattering.single", "scattering.multiple", "scattering.sections",
          "scattering.extinction", "scattering.downscale", "scattering.light_shafts", "scattering.only", "epipolar."},
         "scattering.enabled = false");
-  if (!by_effect || !on) return;
+  if (!on) return;
   const bool epipolar = scattering.technique == Technique::epipolar;
   check(scattering.light_shafts.value == 0,
         {"shadows.cascade_processing", "epipolar.min_max_tree", "epipolar.min_max_format"},
@@ -114,32 +115,35 @@ void check_exposure(const TonemapParams& tonemap, const Check& check) {
 
 }  // namespace
 
+std::string without_effect(std::span<const std::string> keys, std::span<const std::string_view> names) {
+  std::string list;
+  int count = 0;
+  for (const std::string& key : keys) {
+    const bool named = std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+      return name.ends_with('.') ? key.starts_with(name) : key == name;
+    });
+    if (named) list += (count++ > 0 ? ", " : "") + key;
+  }
+  return count == 0 ? list : list + (count > 1 ? " have" : " has") + " no effect";
+}
+
 std::vector<std::string> unused_params(const Params& params, const SceneParams& scene) {
   const std::vector<std::string> set = changed(params, scene);
   std::vector<std::string> out;
-  // Reports which of `names` were set although they have no effect: parameters, or groups, which end in a full stop.
+  // Reports which of `names` were set although they have no effect.
   const auto check = [&](bool when, std::initializer_list<std::string_view> names, std::string_view because) {
-    if (!when) return;
-    std::string list;
-    int count = 0;
-    for (const std::string& key : set) {
-      if (!std::any_of(names.begin(), names.end(), [&](std::string_view name) {
-            return name.ends_with('.') ? key.starts_with(name) : key == name;
-          }))
-        continue;
-      list += (count++ > 0 ? ", " : "") + key;
-    }
-    if (count > 0) out.push_back(list + (count > 1 ? " have" : " has") + " no effect with " + std::string(because));
+    const std::string found = when ? without_effect(set, std::span(names.begin(), names.size())) : std::string();
+    if (!found.empty()) out.push_back(found + " with " + std::string(because));
   };
   using Model = ScatteringModel;
   const Model model = scene.scattering.model;
   const bool by_effect = model == Model::atmosphere;
-  check(
-      !by_effect,
-      {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single", "scattering.multiple",
-       "scattering.sections", "scattering.extinction", "scattering.light_shafts", "scattering.integration_steps",
-       "shadows.cascade_processing", "tables.", "atmosphere.ozone_du", "homogeneous_medium.", "epipolar.", "froxels."},
-      "scattering.model = " + std::string(drawn_model(params, scene).name));
+  check(!by_effect,
+        {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single",
+         "scattering.multiple", "scattering.sections", "scattering.extinction", "scattering.light_shafts",
+         "scattering.integration_steps", "shadows.cascade_processing", "tables.size", "tables.orders",
+         "tables.parameterization", "atmosphere.ozone_du", "homogeneous_medium.", "epipolar.", "froxels."},
+        "scattering.model = " + std::string(drawn_model(params, scene).name));
   check(by_effect, {"scattering.evaluate", "oneil.", "homogeneous."}, "scattering.model = atmosphere");
   check(model == Model::homogeneous, {"oneil."}, "scattering.model = homogeneous");
   check(model == Model::oneil, {"homogeneous.", "oneil.table_size"}, "scattering.model = oneil");
