@@ -107,6 +107,17 @@ TEST_F(Froxels, PictureIsLikeBruteForce) {
   expect_alike("short volume of a homogeneous medium", params, 50.0);
 }
 
+// Returns a query of the volume at a distance for each pixel.
+std::vector<Query> queries_at(const VkExtent2D& extent, double distance) {
+  std::vector<Query> queries;
+  for (std::uint32_t y = 0; y < extent.height; ++y) {
+    for (std::uint32_t x = 0; x < extent.width; ++x) {
+      queries.push_back(query(froxel, {(x + 0.5) / extent.width, (y + 0.5) / extent.height, distance}, {}));
+    }
+  }
+  return queries;
+}
+
 TEST_F(Froxels, EnginesReadThemBesideAnyTechnique) {
   TestFrame frame = frame_of(view_of_the_sky());
   frame.irradiance = Vec3(2.0F, 3.0F, 4.0F);
@@ -116,14 +127,8 @@ TEST_F(Froxels, EnginesReadThemBesideAnyTechnique) {
   draw(params, "epipolar with a volume");
   AtmosphereInputs inputs;
   inputs.sun.irradiance = frame.irradiance;
-  std::vector<Query> queries;
-  constexpr std::uint32_t kSlice = 20;
-  const double distance = distance_of(params.froxels, kSlice);
-  for (std::uint32_t y = 0; y < frame.extent.height; ++y) {
-    for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
-      queries.push_back(query(froxel, {(x + 0.5) / frame.extent.width, (y + 0.5) / frame.extent.height, distance}, {}));
-    }
-  }
+  const double distance = distance_of(params.froxels, 20);
+  const std::vector<Query> queries = queries_at(frame.extent, distance);
   EXPECT_EQ(atmosphere_images(effect()).count, 6U);
   EXPECT_EQ(atmosphere_images(effect(), 1).count, 4U);  // there is one view
   const std::vector<Answer> looked_up = evaluate_points(host(), effect(), params, inputs, queries);
@@ -143,6 +148,29 @@ TEST_F(Froxels, EnginesReadThemBesideAnyTechnique) {
   for (const Answer& answer : evaluate_points(host(), effect(), off, inputs, queries)) {
     ASSERT_EQ(answer.light, glm::dvec3(0.0));
     ASSERT_EQ(answer.transmittance, glm::dvec3(1.0));
+  }
+}
+
+// The light in the volume of a homogeneous medium, with the colour of the sunlight that arrives there.
+TEST_F(Froxels, EnginesReadAMediumWithColouredSunlight) {
+  TestFrame frame = frame_of(view_of_the_sky());
+  show(frame);
+  Params params = params_for(frame.extent);
+  params.scattering.light_shafts = false;
+  params.scattering.medium = MediumKind::homogeneous;
+  params.homogeneous_medium.sunlight = {0.5F, 0.25F, 0.125F};
+  draw(params, "homogeneous medium with a volume");
+  AtmosphereInputs inputs;
+  inputs.sun.irradiance = frame.irradiance;
+  const double distance = distance_of(params.froxels, 20);
+  const std::vector<Query> queries = queries_at(frame.extent, distance);
+  const std::vector<Answer> looked_up = evaluate_points(host(), effect(), params, inputs, queries);
+  frame.distance_m = [distance](std::uint32_t, std::uint32_t) { return distance; };
+  show(frame);
+  const Picture light = draw(by_brute_force(params), "brute force", true);
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    ASSERT_GT(light[i].x, 0.0);
+    ASSERT_LE(relative_error(looked_up[i].light, light[i]), 0.003) << "column " << i;
   }
 }
 

@@ -144,6 +144,23 @@ TEST(physics_columns, other_planets) {
   expect_columns(medium_from_params(thin), kTolerance, "thin");
 }
 
+// The errors of vertical columns that docs/air.md states for high atmospheres, from which a note is printed.
+TEST(physics_columns, high_atmospheres) {
+  struct Case {
+    float radius_m;
+    double error;
+  };
+  for (const auto& [radius_m, error] : {Case{50000.0F, 0.003}, Case{10000.0F, 0.051}, Case{1000.0F, 0.61}}) {
+    Params params;
+    params.planet.radius_m = radius_m;
+    params.atmosphere.rayleigh_scale_height_m = 8000.0F;
+    const shared::Medium m = medium_from_params(params);
+    const double column = glsl64::density_integral_to_top(glsl64::widen(m), 0.0, 1.0).x;
+    const double truth = 8000.0 * (1.0 - std::exp(-static_cast<double>(m.atmosphere_height_m) / 8000.0));
+    EXPECT_NEAR(column / truth - 1.0, error, 0.1 * error) << radius_m;
+  }
+}
+
 TEST(physics_columns, from_space) {
   const shared::Medium m = medium_from_params({});
   const glsl64::Medium wide = glsl64::widen(m);

@@ -63,6 +63,15 @@ TEST_F(SceneGltfSurfaces, JpegsOfUndeclaredColoursAreRefused) {
   refuses_bytes(textured("\xFF\xD8" + adobe + frame + scan, json::object()).text(), "that is damaged");
 }
 
+TEST_F(SceneGltfSurfaces, ScenesAfterTheFirstAreNotedWithoutADefault) {
+  GltfFile file = triangle();
+  file.root["scenes"] = {{{"nodes", {0}}}, {{"nodes", {0}}}};
+  file.root.erase("scene");
+  expect_note(load(file), "scenes after the first");
+  file.root["scene"] = 1;
+  EXPECT_EQ(load(file).notes.size(), load(triangle()).notes.size());
+}
+
 // One picture is stored twice only if it has alpha and its materials differ in their use of it.
 TEST_F(SceneGltfSurfaces, PicturesAreStoredOnceForEachUse) {
   for (const unsigned char alpha : {255, 254}) {
