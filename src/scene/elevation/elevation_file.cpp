@@ -380,8 +380,6 @@ Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source
   return raster;
 }
 
-}  // namespace
-
 // Shifts longitudes by whole turns, so that the middle of the file lies between -180 and 180 degrees.
 void unwind_longitudes(Georeference& geo, int width, int height) {
   if (geo.srs.IsGeographic() == 0) return;
@@ -389,6 +387,8 @@ void unwind_longitudes(Georeference& geo, int width, int height) {
   const double turn = 2.0 * std::numbers::pi / geo.srs.GetAngularUnits();
   geo.transform[0] -= std::round(0.5 * (extent.min_x + extent.max_x) / turn) * turn;
 }
+
+}  // namespace
 
 Result<ElevationRaster> read_elevation_here(const std::string& source_name, const ElevationRequest& request) {
   const Messages messages;
