@@ -5,6 +5,7 @@
 
 #include "atmosphere_points.hpp"
 #include "effect/spectral_medium.hpp"
+#include "effect/wavelengths.hpp"
 #include "models/spectral.hpp"
 #include "shared_effect.hpp"
 #include "tyndall/atmosphere.hpp"
@@ -149,6 +150,52 @@ TEST_F(Spectral, ClearAirLeavesTheBackgroundAsItIs) {
       EXPECT_NEAR(pixel.x, 0.7, 1e-3);
       EXPECT_NEAR(pixel.y, 0.2, 1e-3);
       EXPECT_NEAR(pixel.z, 0.05, 1e-3);
+    }
+  }
+}
+
+// Returns the colour of a background behind a homogeneous medium that scatters no light.
+glm::dvec3 expected_behind(const Params& params, const Vec3& background, double distance_m) {
+  const shared::SpectralMedium m = spectral_medium_from_params(params);
+  const double extinction[4] = {m.rayleigh_scattering.x + m.mie_extinction.x,
+                                m.rayleigh_scattering.y + m.mie_extinction.y,
+                                m.rayleigh_scattering.z + m.mie_extinction.z, m.fourth_channel.x + m.fourth_channel.z};
+  FourChannels behind = {};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double spectrum = static_cast<double>(background.x) * (&shared::kLiftRed.x)[i] +
+                            static_cast<double>(background.y) * (&shared::kLiftGreen.x)[i] +
+                            static_cast<double>(background.z) * (&shared::kLiftBlue.x)[i];
+    behind[i] =
+        spectrum * std::exp(-extinction[i] * static_cast<double>(params.homogeneous_medium.density) * distance_m);
+  }
+  const std::array<double, 3> color = color_of_light(behind);
+  return {color[0], color[1], color[2]};
+}
+
+// The medium of a long run of tests/soak. The froxel volume interpolates transmittances of half precision.
+TEST_F(Spectral, TheBackgroundHasTheColourOfTheModel) {
+  TestFrame frame;
+  frame.view = TestView::at(1000.0, 0.0, 0.6, 0.4);  // froxels end at the planet
+  frame.background = {5.0F, 3.0F, 4.0F};
+  frame.irradiance = Vec3(0.0F);
+  Params params = spectral_params();
+  params.scattering.medium = MediumKind::homogeneous;
+  params.atmosphere.aerosol_density = 1.647702F;
+  params.atmosphere.angstrom_exponent = 4.0F;
+  params.atmosphere.single_scattering_albedo = {0.000147F, 1.0F, 0.471840F};
+  prepare(params);
+  for (const double distance : {1.0, 100.0, 3000.0}) {
+    frame.distance_m = [=](std::uint32_t, std::uint32_t) { return distance; };
+    show(frame);
+    const glm::dvec3 expected = expected_behind(params, frame.background, distance);
+    for (const Technique technique : {Technique::brute_force, Technique::epipolar, Technique::froxels}) {
+      params.scattering.technique = technique;
+      const double tolerance = technique == Technique::froxels ? 1.0e-3 : 2.0e-6;
+      for (const glm::dvec3& found : draw(params, "a coloured background")) {
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_NEAR(found[c], expected[c], tolerance * expected[c]) << static_cast<int>(technique) << ' ' << distance;
+        }
+      }
     }
   }
 }

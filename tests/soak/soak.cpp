@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "../gpu/effect_frame.hpp"
+#include "effect/wavelengths.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall {
@@ -155,6 +156,23 @@ TestFrame random_frame(const Params& params, VkExtent2D limit, Random& random) {
   return frame;
 }
 
+// Returns by how much a grey background may become brighter behind a medium. With four wavelengths, a channel of its
+// colour grows when a wavelength is attenuated that has a negative weight in it: Rec. 709 has no saturated colours. An
+// atmosphere attenuates the other wavelengths more, but the froxel volume rounds each transmittance to half precision.
+double greatest_gain(const Params& params) {
+  if (params.scattering.color == ColorMode::rgb) return 1.0;
+  double out = 1.0;
+  for (const shared::vec4& row : {shared::kColorRed, shared::kColorGreen, shared::kColorBlue}) {
+    double gain = 1.0;
+    for (int i = 0; i < 4; ++i) {
+      const float spectrum = (&shared::kLiftRed.x)[i] + (&shared::kLiftGreen.x)[i] + (&shared::kLiftBlue.x)[i];
+      gain += std::max(0.0, -static_cast<double>((&row.x)[i] * spectrum));
+    }
+    out = std::max(out, gain);
+  }
+  return out;
+}
+
 // Returns the greatest radiance that a frame may have. Single scattering along a ray is at most the irradiance times
 // the greatest value of the phase function, and further orders and the ground add at most what a diffuse reflector of
 // albedo 1 under the whole sunlight and sky sends back. Both are rounded up generously: this finds light that explodes.
@@ -162,7 +180,7 @@ double brightest(const Params& params, const TestFrame& frame) {
   const double g = std::abs(static_cast<double>(params.atmosphere.mie_g));
   const double forward = (1.0 - g * g) / (4.0 * std::numbers::pi * std::pow(1.0 - g, 3.0));
   const double sun = static_cast<double>(frame.irradiance.x) * static_cast<double>(params.scattering.scale);
-  return static_cast<double>(frame.background.x) + 4.0 * sun * (1.0 + 1.5 * forward);
+  return greatest_gain(params) * static_cast<double>(frame.background.x) + 4.0 * sun * (1.0 + 1.5 * forward);
 }
 
 void require_one_line(const Error& error) {
@@ -248,6 +266,9 @@ class Soak {
  private:
   void make() {
     effect_.reset();
+    // Mesa's CPU driver frees pipelines when it executes a command buffer after their destruction.
+    const Result<void> emptied = host_.run([](VkCommandBuffer) -> Result<void> { return {}; });
+    if (!emptied.ok()) find("an empty command buffer: " + emptied.error().message);
     memory_.push_back(resident_bytes() >> 20U);
     EffectDesc desc;
     desc.max_extent = kLargest;
