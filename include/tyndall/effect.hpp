@@ -52,8 +52,8 @@ struct DeviceInfo {
   void (*message)(void* user, Severity severity, std::string_view text) = nullptr;
   void* message_user = nullptr;
   // For shader development: returns SPIR-V to use in place of the built-in shader of that name, or an empty span. The
-  // code must stay valid until the pipelines are made, and have the same bindings. Do not cache the tables that such
-  // shaders make under table_key().
+  // code must stay valid until the pipelines are made, and have the same bindings. The format of its output is changed
+  // to that of the effect. Do not cache the tables that such shaders make under table_key().
   std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;
   void* replace_shader_user = nullptr;
   // The allocator for all images and buffers. Without it, each has an allocation of the device.

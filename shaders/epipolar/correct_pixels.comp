@@ -5,6 +5,7 @@
 #include "epipolar/constants.glsl"
 #include "epipolar/ray_end.glsl"
 #include "epipolar/work_list.glsl"
+#include "frame/output.glsl"
 #include "frame/picture.glsl"
 #include "lib/optical_depth.glsl"
 

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "epipolar/slices.glsl"
-#include "frame/picture.glsl"
+#include "frame/output.glsl"
 
 layout(local_size_x = 32, local_size_y = 2) in;
 

@@ -11,6 +11,7 @@
 #include "epipolar/downscaled.glsl"
 #include "epipolar/store_downscaled.glsl"
 #include "epipolar/unwarp.glsl"
+#include "frame/output.glsl"
 #include "frame/picture.glsl"
 
 BLOCK_GROUP;

@@ -10,6 +10,7 @@
 #include "epipolar/skyline.glsl"
 #include "epipolar/store_downscaled.glsl"
 #include "epipolar/unwarp.glsl"
+#include "frame/output.glsl"
 #include "frame/picture.glsl"
 
 layout(local_size_x = kMarchGroup) in;

@@ -11,6 +11,7 @@
 #include "epipolar/block.glsl"
 #include "epipolar/downscaled_around.glsl"
 #include "epipolar/unwarp.glsl"
+#include "frame/output.glsl"
 #include "frame/picture.glsl"
 
 BLOCK_GROUP;

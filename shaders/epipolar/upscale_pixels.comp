@@ -8,6 +8,7 @@
 #include "epipolar/correction_list.glsl"
 #include "epipolar/downscaled_around.glsl"
 #include "epipolar/unwarp.glsl"
+#include "frame/output.glsl"
 #include "frame/picture.glsl"
 
 layout(local_size_x = kMarchGroup) in;

@@ -8,6 +8,7 @@
 
 #include "frame/constants.glsl"
 #include "frame/homogeneous_medium.glsl"
+#include "frame/output.glsl"
 #include "frame/picture.glsl"
 #include "frame/table_light.glsl"
 #include "frame/view_ray.glsl"

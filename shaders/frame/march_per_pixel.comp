@@ -13,6 +13,7 @@
 #define MIN_READS frame.integration_steps
 
 #include "frame/march_ray.glsl"
+#include "frame/output.glsl"
 #include "frame/picture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

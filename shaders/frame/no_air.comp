@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "frame/output.glsl"
 #include "frame/picture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -25,16 +25,4 @@ vec4 gather_depth(ivec2 corner) {
   return textureGather(scene_depth, (vec2(corner + frame.depth_offset) + 1.0) / vec2(textureSize(scene_depth, 0)));
 }
 
-#ifdef OUTPUT_FORMAT  // defined by the build, as OUTPUT_LARGEST, for shaders that write the output
-layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-
-void store_color(ivec2 pixel, vec3 color) {
-#ifdef SPECTRAL
-  // Saturated light has colours outside of Rec. 709.
-  color = max(color, vec3(0.0));
-#endif
-  imageStore(output_color, pixel + frame.output_offset, vec4(min(color, vec3(OUTPUT_LARGEST)), 1.0));
-}
-#endif
-
 #endif

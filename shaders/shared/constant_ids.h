@@ -21,6 +21,7 @@ const uint kRefineRunId = 13u;        // consecutive samples per thread of refin
 const uint kTreePartId = 14u;         // binary logarithm of the cells per thread of min_max_tree.comp, 4 to 7
 const uint kPhaseTableId = 15u;       // 1: the aerosol's phase function is read from a table (lib/phase.glsl)
 const uint kCloudsId = 16u;           // 1: clouds darken the sunlight
-const uint kSpecialisationIds = 17u;  // how many there are
+const uint kFloatOutputId = 17u;      // 1: the format of the output is rgba32f, 0: rgba16f
+const uint kSpecialisationIds = 18u;  // how many there are
 
 #endif

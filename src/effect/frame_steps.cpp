@@ -23,10 +23,6 @@ struct Frame {
   Specialisation constants = {};
   FrameSteps steps = {};
 
-  // Returns the variant of a shader for the output format.
-  [[nodiscard]] const gpu::Shader& variant(const gpu::Shader& rgba16f, const gpu::Shader& rgba32f) const {
-    return desc.output_format == OutputFormat::rgba32f ? rgba32f : rgba16f;
-  }
   void dispatch(const char* name, const gpu::Shader& shader, VkExtent3D invocations,
                 std::array<std::uint32_t, 2> push = {}) {
     Step step;
@@ -99,6 +95,7 @@ Specialisation specialisation(const Frame& frame) {
   set(shared::kRefinementId, frame.params.epipolar.refinement);
   set(shared::kFormatId, frame.params.epipolar.min_max_format);
   set(shared::kCloudsId, frame.shape.clouds && (single != SingleScattering::none || occluded));
+  set(shared::kFloatOutputId, frame.desc.output_format == OutputFormat::rgba32f);
   set(shared::kPhaseTableId, air::tabulated(frame.params.atmosphere));
   set_sizes(out, frame.shape.target);
   return out;
@@ -130,12 +127,9 @@ void march_and_correct(Frame& f, const char* name, const gpu::Shader& correct) {
 // and finally the pixels that fit no sample.
 void unwarp_steps(Frame& f) {
   const VkExtent2D blocks = unwarp_blocks(f.shape.extent, f.shape.target);
-  f.dispatch("unwarp", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
-             {blocks.width, blocks.height, 1});
-  f.dispatch_over(Resource::discontinuity_blocks, "unwarp_pixels",
-                  f.variant(shaders::unwarp_pixels_comp_rgba16f, shaders::unwarp_pixels_comp_rgba32f));
-  march_and_correct(f, "correct_pixels",
-                    f.variant(shaders::correct_pixels_comp_rgba16f, shaders::correct_pixels_comp_rgba32f));
+  f.dispatch("unwarp", shaders::unwarp_comp, {blocks.width, blocks.height, 1});
+  f.dispatch_over(Resource::discontinuity_blocks, "unwarp_pixels", shaders::unwarp_pixels_comp);
+  march_and_correct(f, "correct_pixels", shaders::correct_pixels_comp);
 }
 
 // Interpolates with scattering.downscale: fills a buffer of half or a quarter of the resolution (Yusov, "IVB
@@ -144,20 +138,15 @@ void downscaled_steps(Frame& f) {
   const VkExtent2D blocks = unwarp_blocks(downscaled_extent(f.shape.extent, f.params), f.shape.target);
   const std::uint8_t extinction = f.constants[shared::kExtinctionId];
   f.constants[shared::kExtinctionId] = 0;  // used only by passes that compose the background
-  f.dispatch("unwarp_downscaled", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
-             {blocks.width, blocks.height, 1});
-  f.dispatch_over(Resource::discontinuity_blocks, "unwarp_downscaled_pixels",
-                  f.variant(shaders::unwarp_pixels_comp_rgba16f, shaders::unwarp_pixels_comp_rgba32f));
+  f.dispatch("unwarp_downscaled", shaders::unwarp_comp, {blocks.width, blocks.height, 1});
+  f.dispatch_over(Resource::discontinuity_blocks, "unwarp_downscaled_pixels", shaders::unwarp_pixels_comp);
   march_and_correct(f, "correct_downscaled", shaders::correct_downscaled_comp);
   f.constants[shared::kExtinctionId] = extinction;
   f.reset(Resource::discontinuity_blocks);
   f.reset(Resource::correction_list);
-  f.dispatch("upscale", f.variant(shaders::upscale_comp_rgba16f, shaders::upscale_comp_rgba32f),
-             {(f.shape.extent.width + 1) / 2, (f.shape.extent.height + 1) / 2, 1});
-  f.dispatch_over(Resource::discontinuity_blocks, "upscale_pixels",
-                  f.variant(shaders::upscale_pixels_comp_rgba16f, shaders::upscale_pixels_comp_rgba32f));
-  march_and_correct(f, "correct_pixels",
-                    f.variant(shaders::correct_pixels_comp_rgba16f, shaders::correct_pixels_comp_rgba32f));
+  f.dispatch("upscale", shaders::upscale_comp, {(f.shape.extent.width + 1) / 2, (f.shape.extent.height + 1) / 2, 1});
+  f.dispatch_over(Resource::discontinuity_blocks, "upscale_pixels", shaders::upscale_pixels_comp);
+  march_and_correct(f, "correct_pixels", shaders::correct_pixels_comp);
 }
 
 // Fills the froxel volume in bands of rows, so that a dispatch stays short. The default size has one band, the largest
@@ -196,7 +185,7 @@ void epipolar_steps(Frame& f) {
   is_downscaled(f.params) ? downscaled_steps(f) : unwarp_steps(f);                             // 1.7
   if (f.params.epipolar.show_sampling) {
     // The marched samples are drawn over the interpolated ones.
-    const gpu::Shader& show = f.variant(shaders::show_sampling_comp_rgba16f, shaders::show_sampling_comp_rgba32f);
+    const gpu::Shader& show = shaders::show_sampling_comp;
     for (const std::uint32_t marched : {0U, 1U}) f.dispatch("show_sampling", show, {samples, slices, 1}, {marched, 0});
   }
 }
@@ -206,7 +195,7 @@ void epipolar_steps(Frame& f) {
 void brute_force_steps(Frame& f) {
   constexpr std::uint32_t kPixelsPerBand = 131072;
   constexpr std::uint32_t kMaxBands = 32;
-  const gpu::Shader& shader = f.variant(shaders::march_per_pixel_comp_rgba16f, shaders::march_per_pixel_comp_rgba32f);
+  const gpu::Shader& shader = shaders::march_per_pixel_comp;
   const auto [width, height] = f.shape.extent;
   const std::uint32_t wanted = std::max(kPixelsPerBand / width, (height + kMaxBands - 1) / kMaxBands);
   const std::uint32_t group = shader.local_size[1];
@@ -248,12 +237,11 @@ FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const Frame
   const bool epipolar = params.scattering.enabled && params.scattering.technique == Technique::epipolar;
   if (uses_froxels(params) && !epipolar) froxel_steps(f);
   if (!params.scattering.enabled) {
-    f.dispatch("no_air", f.variant(shaders::no_air_comp_rgba16f, shaders::no_air_comp_rgba32f), pixels);
+    f.dispatch("no_air", shaders::no_air_comp, pixels);
   } else if (params.scattering.technique == Technique::brute_force) {
     brute_force_steps(f);
   } else if (params.scattering.technique == Technique::froxels) {
-    f.dispatch("compose_froxels",
-               f.variant(shaders::compose_froxels_comp_rgba16f, shaders::compose_froxels_comp_rgba32f), pixels);
+    f.dispatch("compose_froxels", shaders::compose_froxels_comp, pixels);
   } else {
     epipolar_steps(f);
   }

@@ -14,11 +14,21 @@
 namespace tyndall {
 namespace {
 
+// Returns the format of the output, if the shader writes it.
+std::optional<gpu::StorageFormat> output_format(const PipelineKey& key) {
+  for (const gpu::Binding& binding : key.shader->bindings) {
+    if (binding.name != name_of(Resource::output_color)) continue;
+    const bool floats = key.constants[shared::kFloatOutputId] != 0;
+    return gpu::StorageFormat{binding.binding, floats ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT};
+  }
+  return {};
+}
+
 Result<gpu::Pipeline> create_pipeline(const gpu::Device& device, const PipelineKey& key) {
   std::array<gpu::Constant, shared::kSpecialisationIds> constants = {};
   std::size_t count = 0;
   for (const std::uint32_t id : key.shader->constants) constants[count++] = {id, key.constants[id]};
-  return gpu::create_compute_pipeline(device, *key.shader, std::span(constants).first(count));
+  return gpu::create_compute_pipeline(device, *key.shader, std::span(constants).first(count), output_format(key));
 }
 
 // Runs `work` on the calling thread and on up to `others` additional threads, as many as can be started.

@@ -67,11 +67,21 @@ Result<void> create_layouts(const Device& device, Pipeline& pipeline,
   return {};
 }
 
-Result<Handle<VkShaderModule>> create_module(const Device& device, const Shader& shader) {
+Result<Handle<VkShaderModule>> create_module(const Device& device, const Shader& shader,
+                                             const std::optional<StorageFormat>& output = {}) {
   std::span<const std::uint32_t> spirv = shader.spirv;
   if (device.replace_shader != nullptr) {
     const std::span<const std::uint32_t> other = device.replace_shader(device.replace_shader_user, shader.name);
     if (!other.empty()) spirv = other;
+  }
+  std::vector<std::uint32_t> changed;
+  if (output) {
+    changed.assign(spirv.begin(), spirv.end());
+    if (!set_storage_format(changed, *output)) {
+      return Error{ErrorCode::invalid_argument, std::string("the shader ") + shader.name + " has no image at binding " +
+                                                    std::to_string(output->binding) + "; expected its output"};
+    }
+    spirv = changed;
   }
   VkShaderModuleCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
@@ -150,14 +160,15 @@ Result<void> check_shader(const Device& device, const Shader& shader) {
 }
 
 Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& shader,
-                                         std::span<const Constant> constants) {
+                                         std::span<const Constant> constants,
+                                         const std::optional<StorageFormat>& output) {
   Pipeline out;
   out.name = shader.name;
   std::copy(std::begin(shader.local_size), std::end(shader.local_size), out.local_size);
   std::array<VkShaderStageFlags, kMaxBindings> stages = {};
   TYNDALL_TRY(add_bindings(out, shader, stages));
   TYNDALL_TRY(create_layouts(device, out, stages));
-  TYNDALL_ASSIGN(Handle<VkShaderModule> module, create_module(device, shader));
+  TYNDALL_ASSIGN(Handle<VkShaderModule> module, create_module(device, shader, output));
   const Specialization specialization(constants);
   VkComputePipelineCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;

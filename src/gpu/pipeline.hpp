@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "gpu/device.hpp"
 #include "gpu/shader.hpp"
+#include "gpu/storage_format.hpp"
 
 namespace tyndall::gpu {
 
@@ -35,8 +37,10 @@ struct Pipeline {
 // Returns an error if the bindings, push constants or workgroup size of a shader exceed the limits of the device.
 [[nodiscard]] Result<void> check_shader(const Device& device, const Shader& shader);
 
+// `output`: the format of a storage image, instead of that which the shader declares.
 Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& shader,
-                                         std::span<const Constant> constants = {});
+                                         std::span<const Constant> constants = {},
+                                         const std::optional<StorageFormat>& output = {});
 
 // The operation that combines the colour of a fragment with the attachment. `multiply_min` multiplies the colours and
 // stores the smaller alpha.

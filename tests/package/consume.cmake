@@ -55,7 +55,7 @@ else()
   endif()
   # One shader is compiled here, and the others come from the tested build, because all of them take more than a minute.
   run(${CMAKE_COMMAND} --build ${WORK}/configured --target tyndall_embed_shaders
-      tyndall/src/effect/shaders/no_air_comp_rgba16f.spv)
+      tyndall/src/effect/shaders/no_air_comp.spv)
   list(APPEND arguments -D TYNDALL_SHADERS_FROM=${BUILD})
 endif()
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/package/consumer -B ${WORK}/build ${arguments})
