@@ -29,6 +29,8 @@ def numbers(name, value):
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(f"{name}: invalid value {str(value)[:60]!r}; expected numbers") from None
+    if np.ma.is_masked(value):
+        raise ValueError(f"{name}: a value is masked; expected numbers")
     if not np.all(np.isfinite(array)):
         raise ValueError(f"{name}: a value is not finite; expected numbers")
     return array

@@ -18,7 +18,7 @@ class AerialPerspective:
 
         With colours, this is exact for objects of the colour of sunlight above the atmosphere, and an approximation for others.
         """
-        return np.asarray(radiance) * self.transmittance + self.inscattering
+        return np.asanyarray(radiance) * self.transmittance + self.inscattering
 
     def __repr__(self):
         return f"AerialPerspective(shape={self.inscattering.shape})"

@@ -151,6 +151,7 @@ def test_arguments_out_of_range(single, arguments):
 
 @pytest.mark.parametrize("name, arguments, words", [
     ("radiance", ("high", 0), "zenith: invalid value 'high'; expected numbers"),
+    ("radiance", (np.ma.masked_greater([10.0, 95.0], 90.0), 0), "zenith: a value is masked; expected numbers"),
     ("radiance", (1j, 0), "zenith"),
     ("radiance", ([0, 1, 2], [0, 1]), r"zenith \(3,\), sun_zenith \(2,\)"),
     ("sky_map", (91,), "sun_elevation"),
