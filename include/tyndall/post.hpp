@@ -27,7 +27,8 @@ class ToneMapper {
   // Destroys everything immediately. All recorded commands must have completed.
   ~ToneMapper();
 
-  // Records the measurement of `radiance`, and adapts the exposure to it over the `seconds` since the previous picture.
+  // Records the measurement of `radiance`, and adapts the exposure to it over the `seconds` since the previous picture;
+  // negative ones count as 0.
   // The first picture, and the first after reset_history(), takes effect at once. Writes to the image must be visible
   // to COMPUTE_SHADER / SHADER_READ. `slot` is below frames_in_flight; the commands that were recorded with it before
   // must have completed.

@@ -25,13 +25,15 @@ constexpr std::uint32_t kOperators = 10;
 
 struct TonemapSettings {
   Operator op = Operator::uncharted2;
-  float middle_gray = 0.18F;  // with auto exposure: value to which the adapted luminance is scaled before the curve
-  float white_point = 3.0F;   // scaled luminance that becomes white, > 0; for operators with a white point
-  float saturation = 1.0F;    // > 0; for operators on luminance, and for AgX
+  float middle_gray =
+      0.18F;  // >= 0; with auto exposure: value to which the adapted luminance is scaled before the curve
+  float white_point = 3.0F;  // scaled luminance that becomes white, > 0; for operators with a white point
+  float saturation = 1.0F;   // > 0; for operators on luminance, and for AgX
   bool auto_exposure = true;
-  bool light_adaptation = true;     // false: every picture is exposed independently
-  float least_luminance = 1.0e-4F;  // lower limit of the luminance that sets the exposure, so that night stays dark
-  float exposure = 1.8F;            // scale of the radiance without auto exposure
+  bool light_adaptation = true;  // false: every picture is exposed independently
+  float least_luminance =
+      1.0e-4F;            // > 0; lower limit of the luminance that sets the exposure, so that night stays dark
+  float exposure = 1.8F;  // >= 0; scale of the radiance without auto exposure
 };
 
 // Applies the operator to linear radiance times `exposure`, as the GPU does but in double precision. Returns linear

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include "gpu/guard.hpp"
@@ -39,6 +40,24 @@ Result<void> check_view(const char* where, const char* what, VkImageView view) {
                                                 "` is null; expected an RGBA32F image in GENERAL layout"};
 }
 
+Result<void> check_settings(const char* where, const TonemapSettings& settings) {
+  const auto check = [where](const char* name, float value, bool zero) -> Result<void> {
+    if (std::isfinite(value) && (value > 0.0F || (zero && value == 0.0F))) return {};
+    return Error{ErrorCode::invalid_argument, std::string(where) + ": invalid TonemapSettings::" + name + ' ' +
+                                                  std::to_string(value) + "; expected a number " +
+                                                  (zero ? "that is not negative" : "above 0")};
+  };
+  if (static_cast<std::uint32_t>(settings.op) >= kOperators) {
+    return Error{ErrorCode::invalid_argument,
+                 std::string(where) + ": TonemapSettings::op has no such value; expected one of Operator"};
+  }
+  TYNDALL_TRY(check("middle_gray", settings.middle_gray, true));
+  TYNDALL_TRY(check("white_point", settings.white_point, false));
+  TYNDALL_TRY(check("saturation", settings.saturation, false));
+  TYNDALL_TRY(check("least_luminance", settings.least_luminance, false));
+  return check("exposure", settings.exposure, true);
+}
+
 }  // namespace
 
 ToneMapper::ToneMapper(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -74,6 +93,11 @@ Result<void> ToneMapper::measure(VkCommandBuffer cmd, VkImageView radiance, VkEx
     if (!state_) return moved_from(kWhere);
     TYNDALL_TRY(check_command(kWhere, cmd, extent));
     TYNDALL_TRY(check_view(kWhere, "radiance", radiance));
+    TYNDALL_TRY(check_settings(kWhere, settings));
+    if (std::isnan(seconds)) {
+      return Error{ErrorCode::invalid_argument, std::string(kWhere) + ": `seconds` is not a number; expected the time "
+                                                                      "since the previous picture"};
+    }
     return state_->tonemap.exposure().measure(cmd, radiance, extent, settings, seconds, slot);
   });
 }
@@ -86,6 +110,7 @@ Result<void> ToneMapper::record(VkCommandBuffer cmd, VkImageView radiance, VkIma
     TYNDALL_TRY(check_command(kWhere, cmd, extent));
     TYNDALL_TRY(check_view(kWhere, "radiance", radiance));
     TYNDALL_TRY(check_view(kWhere, "display", display));
+    TYNDALL_TRY(check_settings(kWhere, settings));
     return state_->tonemap.record(cmd, radiance, display, extent, settings, slot);
   });
 }

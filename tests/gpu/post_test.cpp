@@ -325,6 +325,18 @@ TEST_F(GpuPost, TheToneMapperGivesTheSameBytes) {
     EXPECT_FALSE(mapper.measure(cmd, from, {0, 1}, settings_, 0.0).ok());
     EXPECT_FALSE(mapper.measure(cmd, from, extent_, settings_, 0.0, 2).ok());
     EXPECT_FALSE(mapper.record(cmd, from, VK_NULL_HANDLE, extent_, settings_).ok());
+    EXPECT_FALSE(mapper.measure(cmd, from, extent_, settings_, std::nan("")).ok());
+    float TonemapSettings::*const numbers[] = {&TonemapSettings::middle_gray, &TonemapSettings::white_point,
+                                               &TonemapSettings::saturation, &TonemapSettings::least_luminance,
+                                               &TonemapSettings::exposure};
+    for (float TonemapSettings::*const number : numbers) {
+      for (const float value : {std::nanf(""), std::numeric_limits<float>::infinity(), -1.0F}) {
+        TonemapSettings wrong = settings_;
+        wrong.*number = value;
+        EXPECT_FALSE(mapper.measure(cmd, from, extent_, wrong, 0.0).ok()) << value;
+        EXPECT_FALSE(mapper.record(cmd, from, to, extent_, wrong).ok()) << value;
+      }
+    }
     if (Result<void> r = mapper.measure(cmd, from, extent_, settings_, 0.0); !r) return r;
     return mapper.record(cmd, from, to, extent_, settings_);
   }));
