@@ -180,7 +180,9 @@ std::uint64_t FileCache::size(std::string_view key) const {
 }
 
 std::optional<std::string> FileCache::read(std::string_view key, std::uint64_t size) {
-  std::string out(holds(key) ? size : 0, '\0');
+  note_.clear();
+  if (!holds(key)) return std::nullopt;  // without the memory; another process may store it at any moment
+  std::string out(size, '\0');
   if (!read(key, std::as_writable_bytes(std::span(out)))) return std::nullopt;
   return out;
 }
