@@ -284,6 +284,7 @@ soak: build
 	@tools/second_driver.sh build/second_driver
 	@ctest --preset ci -C soak --no-tests=error -R MemoryStaysBounded -V
 	@build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
+	@build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED) --validation off
 	@tests/gpu/second_driver.sh build/second_driver/vk_swiftshader_icd.json build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
 
 # SUITES chooses among the tests by a regular expression.
