@@ -22,7 +22,7 @@
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
 #   make costs           measures the cost of techniques and features, docs/generated/costs.md
 #   make soak            changes the viewer at random for two minutes, and draws SOAK_FRAMES (10000) frames of random changes
-#                        with the validation layer, on both CPU drivers
+#                        with the validation layer, on both CPU drivers, and without it for memory
 #   make second-driver   runs every GPU test and the examples on SwiftShader
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
 #   make interruptions   interrupts the program at INTERRUPTIONS (200) random moments, and checks what is left

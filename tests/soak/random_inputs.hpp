@@ -1,6 +1,8 @@
 // Random parameters and frames for long runs of the library, small so that each takes little time.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <random>
 
 #include "../gpu/effect_frame.hpp"

@@ -31,31 +31,29 @@ namespace {
 
 [[noreturn]] void find(const std::string& what) { throw std::runtime_error(what); }
 
-// Returns by how much a grey background may become brighter behind a medium. With four wavelengths, a channel of its
-// colour grows when a wavelength is attenuated that has a negative weight in it: Rec. 709 has no saturated colours. An
-// atmosphere attenuates the other wavelengths more, but the froxel volume rounds each transmittance to half precision.
-double greatest_gain(const Params& params) {
+// Returns by how much a channel of a grey background may grow behind a medium. With four wavelengths, it grows when a
+// wavelength is attenuated that has a negative weight in it, because Rec. 709 has no saturated colours. This is the
+// case if a medium attenuates little else, or by the rounding of transmittances in the froxel volume.
+double greatest_gain(const Params& params, int channel) {
   if (params.scattering.color == ColorMode::rgb) return 1.0;
-  double out = 1.0;
-  for (const shared::vec4& row : {shared::kColorRed, shared::kColorGreen, shared::kColorBlue}) {
-    double gain = 1.0;
-    for (int i = 0; i < 4; ++i) {
-      const float spectrum = (&shared::kLiftRed.x)[i] + (&shared::kLiftGreen.x)[i] + (&shared::kLiftBlue.x)[i];
-      gain += std::max(0.0, -static_cast<double>((&row.x)[i] * spectrum));
-    }
-    out = std::max(out, gain);
+  const shared::vec4 rows[] = {shared::kColorRed, shared::kColorGreen, shared::kColorBlue};
+  double gain = 1.0;
+  for (int i = 0; i < 4; ++i) {
+    const float spectrum = (&shared::kLiftRed.x)[i] + (&shared::kLiftGreen.x)[i] + (&shared::kLiftBlue.x)[i];
+    gain += std::max(0.0, -static_cast<double>((&rows[channel].x)[i] * spectrum));
   }
-  return out;
+  return gain;
 }
 
-// Returns the greatest radiance that a frame may have. Single scattering along a ray is at most the irradiance times
-// the greatest value of the phase function, and further orders and the ground add at most what a diffuse reflector of
-// albedo 1 under the whole sunlight and sky sends back. Both are rounded up generously: this finds light that explodes.
-double brightest(const Params& params, const TestFrame& frame) {
+// Returns the greatest radiance that a channel of a frame may have. Single scattering along a ray is at most the
+// irradiance times the greatest value of the phase function, and further orders and the ground add at most what a
+// diffuse reflector of albedo 1 under the whole sunlight and sky sends back. Both are rounded up generously: this finds
+// light that explodes.
+double brightest(const Params& params, const TestFrame& frame, int channel) {
   const double g = std::abs(static_cast<double>(params.atmosphere.mie_g));
   const double forward = (1.0 - g * g) / (4.0 * std::numbers::pi * std::pow(1.0 - g, 3.0));
   const double sun = static_cast<double>(frame.irradiance.x) * static_cast<double>(params.scattering.scale);
-  return greatest_gain(params) * static_cast<double>(frame.background.x) + 4.0 * sun * (1.0 + 1.5 * forward);
+  return greatest_gain(params, channel) * static_cast<double>(frame.background.x) + 4.0 * sun * (1.0 + 1.5 * forward);
 }
 
 void require_one_line(const Error& error) {
@@ -227,16 +225,20 @@ class Soak {
     }
     const Result<std::vector<glm::dvec3>> picture = images.value().output(host_);
     if (!picture.ok()) find("output: " + picture.error().message);
-    double bound = brightest(effect_->params(), shape);
-    // Until tables for changed parameters are complete, pictures combine the coefficients with the previous tables, and
-    // may be too bright (docs/integration.md).
-    if (affected(effect_->params(), table_params(*effect_)) != 0) bound = std::numeric_limits<double>::max();
-    // Half precision rounds up by at most one part in 2048, or by half of its smallest number.
-    if (format == OutputFormat::rgba16f) bound = bound * 1.0005 + 0x1p-25;
+    double bounds[3] = {};
+    for (int c = 0; c < 3; ++c) {
+      double& bound = bounds[c];
+      bound = brightest(effect_->params(), shape, c);
+      // Until tables for changed parameters are complete, pictures combine the coefficients with the previous tables,
+      // and may be too bright (docs/integration.md).
+      if (affected(effect_->params(), table_params(*effect_)) != 0) bound = std::numeric_limits<double>::max();
+      // Half precision rounds up by at most one part in 2048, or by half of its smallest number.
+      if (format == OutputFormat::rgba16f) bound = bound * 1.0005 + 0x1p-25;
+    }
     for (const glm::dvec3& pixel : picture.value()) {
       for (int c = 0; c < 3; ++c) {
-        if (std::isfinite(pixel[c]) && pixel[c] >= 0.0 && pixel[c] <= bound) continue;
-        find("a pixel is " + std::to_string(pixel[c]) + "; expected 0 to " + std::to_string(bound) + ";" +
+        if (std::isfinite(pixel[c]) && pixel[c] >= 0.0 && pixel[c] <= bounds[c]) continue;
+        find("a pixel is " + std::to_string(pixel[c]) + "; expected 0 to " + std::to_string(bounds[c]) + ";" +
              described(effect_->params()) + ";" + described(shape));
       }
     }

@@ -208,6 +208,22 @@ TEST(Spectral, GlassNeverAmplifiesLight) {
 }
 
 // G173 has 133.1 klux above the atmosphere (Gueymard 2004), with the chromaticity of a black body of 5770 K.
+// The froxel volume rounds each transmittance to half precision. Behind the first metres of a medium, that makes a grey
+// background brighter in a channel with negative weights. The medium is that of a finding in docs/reliability.md.
+TEST(Spectral, RoundedTransmittancesBrightenLittle) {
+  const glm::dvec4 extinction = {2.80345e-5, 4.16981e-5, 5.99999e-5, 1.16238e-4};
+  glm::dvec3 brightest(0.0);
+  for (double distance_m = 0.0; distance_m < 40.0; distance_m += 0.001) {
+    glm::dvec4 rounded;
+    // Half precision has steps of 2^-11 between 0.5 and 1.
+    for (int i = 0; i < 4; ++i) rounded[i] = std::round(std::exp(-extinction[i] * distance_m) * 2048.0) / 2048.0;
+    brightest = glm::max(brightest, glsl::transmitted_color(glm::dvec3(1.0), rounded));
+  }
+  EXPECT_NEAR(brightest.r, 1.0003, 5.0e-5);
+  EXPECT_LT(brightest.g, 1.0001);
+  EXPECT_LE(brightest.b, 1.0);
+}
+
 TEST(Spectral, SunlightAboveTheAtmosphere) {
   EXPECT_NEAR(683.0 * sun_luminous_irradiance(), 133.1e3, 0.7e3);
   const Color xyz = xyz_of_color(color_of_light({1.0, 1.0, 1.0, 1.0}));
