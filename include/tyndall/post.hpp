@@ -27,11 +27,10 @@ class ToneMapper {
   // Destroys everything immediately. All recorded commands must have completed.
   ~ToneMapper();
 
-  // Records the measurement of `radiance`, and adapts the exposure to it over the `seconds` since the previous picture;
-  // negative ones count as 0.
-  // The first picture, and the first after reset_history(), takes effect at once. Writes to the image must be visible
-  // to COMPUTE_SHADER / SHADER_READ. `slot` is below frames_in_flight; the commands that were recorded with it before
-  // must have completed.
+  // Records the measurement of `radiance`, and adapts the exposure to it over the `seconds` since the previous picture.
+  // The first picture, and the first after reset_history(), takes effect at once. Negative seconds count as 0. Writes
+  // to the image must be visible to COMPUTE_SHADER / SHADER_READ. `slot` is below frames_in_flight; the commands that
+  // were recorded with it before must have completed.
   Result<void> measure(VkCommandBuffer cmd, VkImageView radiance, VkExtent2D extent, const TonemapSettings& settings,
                        double seconds, std::uint32_t slot = 0);
   // Records the pass from `radiance` to `display`, two images of the same extent: linear values in [0; 1] with Rec. 709

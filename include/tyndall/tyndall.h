@@ -173,7 +173,7 @@ typedef struct TyndallDeviceInfo {
   void (*message)(void* user, TyndallSeverity severity, const char* text);
   void* message_user;
   // For shader development: returns SPIR-V to use in place of the built-in shader of that name and sets `words` to its
-  // length, or returns null.
+  // length, or returns null. The format of the output is changed to that of the effect.
   const uint32_t* (*replace_shader)(void* user, const char* name, size_t* words);
   void* replace_shader_user;
   // The allocator for all images and buffers, as MemoryCallbacks of C++: both functions or neither.

@@ -40,6 +40,7 @@ Result<void> check_view(const char* where, const char* what, VkImageView view) {
                                                 "` is null; expected an RGBA32F image in GENERAL layout"};
 }
 
+// The operator is checked with its pipeline.
 Result<void> check_settings(const char* where, const TonemapSettings& settings) {
   const auto check = [where](const char* name, float value, bool zero) -> Result<void> {
     if (std::isfinite(value) && (value > 0.0F || (zero && value == 0.0F))) return {};
@@ -47,10 +48,6 @@ Result<void> check_settings(const char* where, const TonemapSettings& settings) 
                                                   std::to_string(value) + "; expected a number " +
                                                   (zero ? "that is not negative" : "above 0")};
   };
-  if (static_cast<std::uint32_t>(settings.op) >= kOperators) {
-    return Error{ErrorCode::invalid_argument,
-                 std::string(where) + ": TonemapSettings::op has no such value; expected one of Operator"};
-  }
   TYNDALL_TRY(check("middle_gray", settings.middle_gray, true));
   TYNDALL_TRY(check("white_point", settings.white_point, false));
   TYNDALL_TRY(check("saturation", settings.saturation, false));
