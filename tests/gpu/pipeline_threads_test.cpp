@@ -40,6 +40,15 @@ TEST_F(PipelineThreads, CreateTheSamePipelinesAsOneThread) {
   const Result<Effect> failed = Effect::create(failing, desc, params);
   ASSERT_FALSE(failed.ok());
   EXPECT_NE(failed.error().message.find("threw an exception"), std::string::npos) << failed.error().message;
+  // A shader that does not write the output.
+  failing.replace_shader = [](void*, std::string_view name) -> std::span<const std::uint32_t> {
+    static constexpr std::uint32_t kEmpty[] = {0x07230203, 0x00010500, 0, 1, 0};
+    return name == "unwarp_comp" ? std::span(kEmpty) : std::span<const std::uint32_t>();
+  };
+  const Result<Effect> without_output = Effect::create(failing, desc, params);
+  ASSERT_FALSE(without_output.ok());
+  EXPECT_NE(without_output.error().message.find("the shader unwarp_comp has no image at binding 5"), std::string::npos)
+      << without_output.error().message;
   for (const std::uint32_t threads : {0U, 65U}) {
     desc.pipeline_threads = threads;
     EXPECT_FALSE(Effect::create(info(), desc, params).ok()) << threads;

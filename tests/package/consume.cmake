@@ -56,7 +56,7 @@ else()
   # One shader is compiled here, and the others come from the tested build, because all of them take more than a minute.
   run(${CMAKE_COMMAND} --build ${WORK}/configured --target tyndall_embed_shaders
       tyndall/src/effect/shaders/no_air_comp.spv)
-  # As in engines that build so. It takes half the time.
+  # Engines may build it in unity, which takes less time.
   list(APPEND arguments -D TYNDALL_SHADERS_FROM=${BUILD} -D CMAKE_UNITY_BUILD=ON)
 endif()
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/package/consumer -B ${WORK}/build ${arguments})
